@@ -1,0 +1,31 @@
+//! A constant.
+
+use lacuna::prelude::*;
+
+/// w = value.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Bias {
+    /// Unit of the channel.
+    pub value: f64,
+}
+
+impl Effect for Bias {
+    fn card(&self) -> EffectCard {
+        EffectCard::law(vec![Knob::coefficient("value", self.value, UnitRule::Channel)])
+            .needs(Needs::Nothing)
+            .places(Places { channel: true, input: true, output: true, ..Places::default() })
+            .rank(1)
+    }
+
+    fn title(&self, _: &Named) -> String {
+        "A constant offset".into()
+    }
+
+    #[inline(always)]
+    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
+        at.knobs[0]
+    }
+}
+
+lacuna::register!(CandidateEffect for Bias, "bias", "a constant offset");

@@ -1,0 +1,49 @@
+//! Dry friction.
+
+use lacuna::prelude::*;
+
+/// w = level tanh(z / width).
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CoulombFriction {
+    /// Unit of the channel; negative where it opposes a motion along the channel.
+    pub level: f64,
+    /// Speed below which the friction fades, unit of the coordinate.
+    pub width: f64,
+}
+
+impl Default for CoulombFriction {
+    fn default() -> Self {
+        Self { level: 0.0, width: 1.0 }
+    }
+}
+
+impl Effect for CoulombFriction {
+    fn card(&self) -> EffectCard {
+        EffectCard::law(vec![
+            Knob::coefficient("level", self.level, UnitRule::Channel),
+            Knob::shape("width", self.width, UnitRule::Coordinate),
+        ])
+        .needs(Needs::Velocity)
+        .sign(SignRule::Opposing { polarity: 1 })
+        .rank(2)
+    }
+
+    fn title(&self, _: &Named) -> String {
+        "Dry friction".into()
+    }
+
+    #[inline(always)]
+    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
+        let &[level, width] = at.knobs();
+        level * (at.z() / width).tanh()
+    }
+
+    fn search(&self, view: &View) -> Search {
+        let card = Effect::card(self);
+        let rms = view.rms;
+        Search::plain(&card).over(&card, "width", &[0.03 * rms, 0.2 * rms], (0.003 * rms, rms))
+    }
+}
+
+lacuna::register!(CandidateEffect for CoulombFriction, "coulomb_friction", "dry friction: level tanh(z / width)");

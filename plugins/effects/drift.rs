@@ -1,0 +1,31 @@
+//! Something that grows with time.
+
+use lacuna::prelude::*;
+
+/// w = rate t into an output; a parameter grows by rate t.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Drift {
+    /// Unit of the channel (or the parameter) per s.
+    pub rate: f64,
+}
+
+impl Effect for Drift {
+    fn card(&self) -> EffectCard {
+        EffectCard::law(vec![Knob::coefficient("rate", self.rate, UnitRule::ChannelPerSecond)])
+            .needs(Needs::Time)
+            .places(Places { output: true, parameter: true, ..Places::default() })
+            .rank(3)
+    }
+
+    fn title(&self, _: &Named) -> String {
+        "A drift".into()
+    }
+
+    #[inline(always)]
+    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
+        at.knobs[0] * at.z()
+    }
+}
+
+lacuna::register!(CandidateEffect for Drift, "drift", "rate t, into an output or a parameter");

@@ -1,0 +1,21 @@
+//! Effects: what a model may lack.
+
+pub mod backlash;
+pub mod bias;
+pub mod coulomb_friction;
+pub mod data_fault;
+pub mod dead_zone;
+pub mod delay;
+pub mod drag;
+pub mod drift;
+pub mod extra_mode;
+pub mod gain;
+pub mod harmonic;
+pub mod hinge;
+pub mod hysteresis;
+pub mod lag;
+pub mod parameter;
+pub mod polynomial;
+pub mod saturation;
+pub mod stop;
+pub mod stribeck_friction;

@@ -1,0 +1,35 @@
+//! Another value of one of the model's own parameters.
+
+use lacuna::prelude::*;
+
+/// The parameter named by `into` has this value.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Parameter {
+    /// Unit of the parameter.
+    pub value: f64,
+}
+
+impl Effect for Parameter {
+    fn card(&self) -> EffectCard {
+        let mut knob = Knob::coefficient("value", self.value, UnitRule::Channel);
+        knob.neutral = None;
+        EffectCard::law(vec![knob])
+            .by(Mechanism::Parameter)
+            .needs(Needs::Nothing)
+            .places(Places { parameter: true, ..Places::default() })
+            .rank(0)
+    }
+
+    fn title(&self, _: &Named) -> String {
+        "Another value of a parameter".into()
+    }
+
+    /// Nothing is added: the model itself changes.
+    #[inline(always)]
+    fn law<R: Real>(&self, _: &Felt<R>, _: &mut [R]) -> R {
+        R::constant(0.0)
+    }
+}
+
+lacuna::register!(CandidateEffect for Parameter, "parameter", "another value of the parameter named by into");

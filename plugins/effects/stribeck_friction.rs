@@ -1,0 +1,62 @@
+//! Dry friction that is larger near standstill.
+
+use lacuna::prelude::*;
+
+/// w = (level + extra exp(-(z / speed)^2)) tanh(z / width).
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct StribeckFriction {
+    /// Friction at speed, unit of the channel.
+    pub level: f64,
+    /// What is added near standstill, unit of the channel.
+    pub extra: f64,
+    /// Speed over which the addition fades, unit of the coordinate.
+    pub speed: f64,
+    /// Speed below which all friction fades, unit of the coordinate.
+    pub width: f64,
+}
+
+impl Default for StribeckFriction {
+    fn default() -> Self {
+        Self { level: 0.0, extra: 0.0, speed: 1.0, width: 1.0 }
+    }
+}
+
+impl Effect for StribeckFriction {
+    fn card(&self) -> EffectCard {
+        EffectCard::law(vec![
+            Knob::coefficient("level", self.level, UnitRule::Channel),
+            Knob::coefficient("extra", self.extra, UnitRule::Channel),
+            Knob::shape("speed", self.speed, UnitRule::Coordinate),
+            Knob::shape("width", self.width, UnitRule::Coordinate),
+        ])
+        .needs(Needs::Velocity)
+        .sign(SignRule::Opposing { polarity: 1 })
+        .rank(4)
+    }
+
+    fn title(&self, _: &Named) -> String {
+        "Dry friction with a Stribeck bump".into()
+    }
+
+    #[inline(always)]
+    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
+        let &[level, extra, speed, width] = at.knobs();
+        let ratio = at.z() / speed;
+        (level + extra * (-(ratio * ratio)).exp()) * (at.z() / width).tanh()
+    }
+
+    fn search(&self, view: &View) -> Search {
+        let card = Effect::card(self);
+        let rms = view.rms;
+        let mut search =
+            Search::plain(&card).over(&card, "speed", &[0.2 * rms, 0.6 * rms], (0.02 * rms, 3.0 * rms));
+        for start in &mut search.starts {
+            start[3] = 0.05 * rms;
+        }
+        (search.min[3], search.max[3]) = (0.003 * rms, rms);
+        search
+    }
+}
+
+lacuna::register!(CandidateEffect for StribeckFriction, "stribeck_friction", "dry friction, larger near standstill");

@@ -1,0 +1,50 @@
+//! Measured or made signals, with units, time and a way to be split.
+//!
+//! A [`Record`] holds inputs and outputs sampled at one regular step. It comes from a CSV
+//! file, matched with what a model wants ([`read_for`]) or with the columns a user names
+//! ([`Record::csv`]), or is made from values ([`Record::new`]), an excitation
+//! ([`Excitation`]) and [`noise`]. It can be cut ([`Record::slice`], [`Record::split`]),
+//! searched for repetition ([`Record::periods`]) and written ([`Record::write_csv`]).
+//!
+//! Whatever cannot be understood is a [`DataError`] that names file, line and column;
+//! whatever was understood but may surprise is a [`Remark`]. Arrays handed in are never
+//! changed in place.
+//!
+//! ```no_run
+//! use lacuna::data::Record;
+//!
+//! let record = Record::csv("press.csv")?.pick(&["force [N]"], &["position [m]"])?;
+//! let parts = record.split(&[0.7, 0.3])?;
+//! println!("{} s to fit, {} s to choose", parts[0].duration(), parts[1].duration());
+//! # Ok::<(), lacuna::data::DataError>(())
+//! ```
+
+mod clock;
+mod csv;
+mod error;
+mod excite;
+mod hint;
+mod matching;
+pub mod noise;
+mod periods;
+mod pick;
+mod random;
+mod record;
+mod remark;
+mod split;
+mod step;
+mod table;
+pub mod unit;
+mod write;
+
+pub use error::DataError;
+pub use excite::{
+    Excitation, FilteredNoise, Lines, Multisine, Phases, Prbs, Sequence, Steps, crest_factor,
+};
+pub use matching::{Want, read_for};
+pub use periods::Periods;
+pub use random::Random;
+pub use record::{Record, Signal};
+pub use remark::Remark;
+pub use step::Step;
+pub use table::{Column, Table};

@@ -1,0 +1,382 @@
+//! What an effect says about itself.
+
+use std::borrow::Cow;
+use std::fmt;
+
+use crate::model::Quantity;
+
+/// What a knob does to the shape of the effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Role {
+    /// The effect is proportional to it: 0 means absent.
+    Coefficient,
+    /// It shapes the curve (a width, a threshold, a frequency).
+    Shape,
+    /// It picks one of a few variants and is never refined (a side).
+    Choice,
+}
+
+/// The unit of a knob, from the units of where the effect acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum UnitRule {
+    /// No unit.
+    None,
+    /// Unit of the channel.
+    Channel,
+    /// Unit of the coordinate.
+    Coordinate,
+    /// Unit of the channel over a power of the coordinate's.
+    ChannelPerCoordinate(u8),
+    /// One over the unit of the coordinate.
+    PerCoordinate,
+    /// Unit of the channel per second.
+    ChannelPerSecond,
+    /// Unit of the channel over the coordinate's, times s^2 (a mass).
+    Inertia,
+    /// s.
+    Second,
+    /// rad/s.
+    RadianPerSecond,
+}
+
+/// One parameter of an effect.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Knob {
+    /// Name: the key in model files and the field of the effect's struct (`values.3` is the
+    /// fourth of a list).
+    pub name: Cow<'static, str>,
+    /// Present value; infinite where an optional bound is absent.
+    pub value: f64,
+    /// Value at which the effect vanishes whatever the other knobs say, if there is one.
+    pub neutral: Option<f64>,
+    /// What it does.
+    pub role: Role,
+    /// Its unit.
+    pub unit: UnitRule,
+    /// Smallest value allowed.
+    pub min: f64,
+    /// Largest value allowed.
+    pub max: f64,
+}
+
+impl Knob {
+    /// A coefficient: the effect is proportional to it.
+    pub fn coefficient(name: impl Into<Cow<'static, str>>, value: f64, unit: UnitRule) -> Self {
+        Self {
+            name: name.into(),
+            value,
+            neutral: Some(0.0),
+            role: Role::Coefficient,
+            unit,
+            min: f64::NEG_INFINITY,
+            max: f64::INFINITY,
+        }
+    }
+
+    /// A shape knob, positive.
+    pub fn shape(name: impl Into<Cow<'static, str>>, value: f64, unit: UnitRule) -> Self {
+        Self { neutral: None, role: Role::Shape, min: 0.0, ..Self::coefficient(name, value, unit) }
+    }
+
+    /// The same knob with its allowed range.
+    #[must_use]
+    pub fn within(mut self, min: f64, max: f64) -> Self {
+        self.min = min;
+        self.max = max;
+        self
+    }
+
+    /// The same knob with the value at which the effect vanishes.
+    #[must_use]
+    pub fn neutral_at(mut self, neutral: f64) -> Self {
+        self.neutral = Some(neutral);
+        self
+    }
+}
+
+/// Which sign physics allows a coefficient.
+///
+/// With D the rate at which the channel changes the coordinate (D = dz/dx B_w), friction
+/// has the sign of -D and a reaction mass the sign of +D. D may be negative, where a
+/// coordinate is written the other way round, so the rule is never "negative".
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SignRule {
+    /// Both signs.
+    Any,
+    /// Opposes the motion: sign of -D, times `polarity` (-1 where the law has a minus in it).
+    Opposing {
+        /// -1 where the law itself carries a minus sign.
+        polarity: i8,
+    },
+    /// Moves with the coordinate: sign of D.
+    Along,
+    /// Never negative.
+    Positive,
+}
+
+/// What an effect may depend on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Needs {
+    /// Nothing.
+    Nothing,
+    /// Any coordinate.
+    Coordinate,
+    /// A velocity that changes sign along the record.
+    Velocity,
+    /// A coordinate whose rate of change is among the model's signals.
+    CoordinateWithRate,
+    /// A position (whose velocity is known), a velocity, or a force: what can shake an
+    /// oscillator.
+    Motion,
+    /// An angle, or time.
+    AngleOrTime,
+    /// Time.
+    Time,
+}
+
+/// How the system carries an effect out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mechanism {
+    /// By its law: w = law(z), perhaps with states of its own.
+    Law,
+    /// First-order filter of the path it sits in, solved exactly.
+    Lag,
+    /// Transport delay of the path it sits in.
+    Delay,
+    /// Play of the path it sits in.
+    Play,
+    /// Another value of a parameter of the model.
+    Parameter,
+    /// Nothing in the model: the data are at fault.
+    Data,
+}
+
+/// Where candidates of an effect are put when causes are searched for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Places {
+    /// Into the model's own channels.
+    pub channel: bool,
+    /// Into an input, of the input itself (or of nothing, or of time).
+    pub input: bool,
+    /// Into an output, of the output itself (or of nothing, or of time).
+    pub output: bool,
+    /// Into a parameter.
+    pub parameter: bool,
+    /// Into an output, of an input (a path beside the model).
+    pub beside: bool,
+}
+
+/// Everything an effect declares.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EffectCard {
+    /// Its parameters, in the order of the law's slice.
+    pub knobs: Vec<Knob>,
+    /// States of its own.
+    pub states: usize,
+    /// How it is carried out.
+    pub mechanism: Mechanism,
+    /// What it may depend on.
+    pub needs: Needs,
+    /// Where it is looked for.
+    pub places: Places,
+    /// Sign of its first coefficient.
+    pub sign: SignRule,
+    /// How simple it is: the lower of two equal explanations is the headline.
+    pub rank: u8,
+    /// Knobs that have a fixed value where the effect acts on its own path.
+    pub own_path: &'static [(&'static str, f64)],
+}
+
+impl EffectCard {
+    /// A law with these knobs, of any coordinate into any channel.
+    pub fn law(knobs: Vec<Knob>) -> Self {
+        Self {
+            knobs,
+            states: 0,
+            mechanism: Mechanism::Law,
+            needs: Needs::Coordinate,
+            places: Places { channel: true, ..Places::default() },
+            sign: SignRule::Any,
+            rank: 3,
+            own_path: &[],
+        }
+    }
+
+    /// The same, depending on something else.
+    #[must_use]
+    pub fn needs(mut self, needs: Needs) -> Self {
+        self.needs = needs;
+        self
+    }
+
+    /// The same, looked for at other places.
+    #[must_use]
+    pub fn places(mut self, places: Places) -> Self {
+        self.places = places;
+        self
+    }
+
+    /// The same with a sign rule.
+    #[must_use]
+    pub fn sign(mut self, sign: SignRule) -> Self {
+        self.sign = sign;
+        self
+    }
+
+    /// The same with another rank.
+    #[must_use]
+    pub fn rank(mut self, rank: u8) -> Self {
+        self.rank = rank;
+        self
+    }
+
+    /// The same with states of its own.
+    #[must_use]
+    pub fn states(mut self, states: usize) -> Self {
+        self.states = states;
+        self
+    }
+
+    /// The same, carried out by another mechanism.
+    #[must_use]
+    pub fn by(mut self, mechanism: Mechanism) -> Self {
+        self.mechanism = mechanism;
+        self
+    }
+
+    /// Present values of the knobs.
+    pub fn values(&self) -> Vec<f64> {
+        self.knobs.iter().map(|knob| knob.value).collect()
+    }
+
+    /// Whether the values make the effect vanish.
+    pub fn is_neutral(&self, values: &[f64]) -> bool {
+        let coefficients = self.knobs.iter().zip(values).filter(|(k, _)| k.role == Role::Coefficient);
+        let mut any = false;
+        let mut all_zero = true;
+        for (_, value) in coefficients {
+            any = true;
+            all_zero &= *value == 0.0;
+        }
+        if any && all_zero {
+            return true;
+        }
+        let shapes = || self.knobs.iter().zip(values).filter(|(k, _)| k.role == Role::Shape);
+        let with_neutral = shapes().filter(|(k, _)| k.neutral.is_some()).count();
+        with_neutral > 0
+            && shapes().all(|(k, value)| k.neutral.is_none_or(|neutral| neutral == *value))
+    }
+}
+
+/// Where the search for an effect starts: values for every knob, coefficients at 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// Grid of starting values of the knobs. Infinite shape values stay as they are.
+    pub starts: Vec<Vec<f64>>,
+    /// Smallest values worth trying.
+    pub min: Vec<f64>,
+    /// Largest values worth trying.
+    pub max: Vec<f64>,
+    /// Whether a finer grid of thresholds should be tried before refining.
+    pub thresholds: bool,
+}
+
+impl Search {
+    /// One start at the card's values, coefficients at zero, inside the knobs' ranges.
+    pub fn plain(card: &EffectCard) -> Self {
+        let start = card
+            .knobs
+            .iter()
+            .map(|knob| if knob.role == Role::Coefficient { 0.0 } else { knob.value })
+            .collect();
+        Self {
+            starts: vec![start],
+            min: card.knobs.iter().map(|knob| knob.min).collect(),
+            max: card.knobs.iter().map(|knob| knob.max).collect(),
+            thresholds: false,
+        }
+    }
+
+    /// Replaces the starts by a grid over one knob and narrows its range.
+    ///
+    /// # Panics
+    ///
+    /// If the card has no such knob.
+    #[must_use]
+    #[track_caller]
+    pub fn over(mut self, card: &EffectCard, knob: &str, grid: &[f64], range: (f64, f64)) -> Self {
+        let index = card.knobs.iter().position(|k| k.name == knob);
+        let Some(index) = index else { panic!("no knob called {knob}") };
+        let first = self.starts.swap_remove(0);
+        self.starts = grid
+            .iter()
+            .map(|&value| {
+                let mut start = first.clone();
+                start[index] = value;
+                start
+            })
+            .collect();
+        self.min[index] = self.min[index].max(range.0);
+        self.max[index] = self.max[index].min(range.1);
+        self
+    }
+}
+
+/// What the named coordinate of a cause is, for the sentence.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Named {
+    /// Quantity of the coordinate, if known.
+    pub quantity: Option<Quantity>,
+    /// Whether the effect acts on its own path (an actuator, a sensor).
+    pub own_path: bool,
+}
+
+impl Named {
+    /// Whether the coordinate is a velocity.
+    pub fn is_velocity(&self) -> bool {
+        self.quantity.as_ref().is_some_and(Quantity::is_velocity)
+    }
+}
+
+impl fmt::Display for Role {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Coefficient => "coefficient",
+            Self::Shape => "shape",
+            Self::Choice => "choice",
+        })
+    }
+}
+
+impl UnitRule {
+    /// The unit as text.
+    pub fn text(self, channel: &str, coordinate: &str) -> String {
+        let over = |top: &str, bottom: &str| match (top.is_empty(), bottom.is_empty()) {
+            (_, true) => top.to_string(),
+            (true, false) => format!("1/{}", grouped(bottom)),
+            (false, false) => format!("{top}/{}", grouped(bottom)),
+        };
+        match self {
+            Self::None => String::new(),
+            Self::Channel => channel.to_string(),
+            Self::Coordinate => coordinate.to_string(),
+            Self::ChannelPerCoordinate(1) => over(channel, coordinate),
+            Self::ChannelPerCoordinate(_) if coordinate.is_empty() => channel.to_string(),
+            Self::ChannelPerCoordinate(power) => {
+                over(channel, &format!("{}^{power}", grouped(coordinate)))
+            }
+            Self::PerCoordinate => over("", coordinate),
+            Self::ChannelPerSecond => over(channel, "s"),
+            Self::Inertia if channel.is_empty() && coordinate.is_empty() => "s^2".into(),
+            Self::Inertia if channel.is_empty() => format!("s^2/{}", grouped(coordinate)),
+            Self::Inertia => over(&format!("{channel} s^2"), coordinate),
+            Self::Second => "s".into(),
+            Self::RadianPerSecond => "rad/s".into(),
+        }
+    }
+}
+
+/// A unit that may follow a slash or carry a power.
+fn grouped(unit: &str) -> String {
+    if unit.contains([' ', '/', '*', '^']) { format!("({unit})") } else { unit.to_string() }
+}

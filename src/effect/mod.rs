@@ -1,0 +1,15 @@
+//! Shapes of what a model may lack, and how they are written.
+//!
+//! An effect is a shape: w = law(z), a curve of one coordinate, perhaps with states of
+//! its own. Placed at (into, of) it becomes a block of the continuous-time interconnection:
+//! z is a row of S_zx, w enters by a column of S_xw.
+
+mod card;
+mod law;
+mod view;
+
+pub use card::{
+    EffectCard, Knob, Mechanism, Named, Needs, Places, Role, Search, SignRule, UnitRule,
+};
+pub use law::{CandidateEffect, Effect, EffectBlock, EffectCall, Felt, Shape};
+pub use view::View;

@@ -1,0 +1,29 @@
+//! lacuna: what a model's simulation gets wrong, by name.
+
+extern crate self as lacuna;
+
+pub mod fault;
+pub mod effect;
+pub mod model;
+#[path = "../plugins/mod.rs"]
+pub mod plugins;
+pub mod real;
+pub mod register;
+pub mod system;
+
+#[doc(hidden)]
+pub mod __private {
+    pub use inventory;
+    pub use typetag;
+}
+
+/// What a plug-in or a short program needs.
+pub mod prelude {
+    pub use crate::effect::{
+        CandidateEffect, Effect, EffectCard, Felt, Knob, Mechanism, Named, Needs, Places, Role,
+        Search, SignRule, UnitRule, View,
+    };
+    pub use crate::model::{At, Fault, Physics, Signals, StateSpaceModel};
+    pub use crate::real::Real;
+    pub use serde::{Deserialize, Serialize};
+}

@@ -1,0 +1,275 @@
+//! The object-safe face of a model: called once per block of lanes.
+
+use std::fmt::Debug;
+
+use super::Signals;
+use crate::real::{Dual, F32x16, F64x8, InRegisters};
+
+/// Directions that a dual number carries through a model at once.
+pub const DIRECTIONS: usize = 4;
+
+/// What a law is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ask {
+    /// dx/dt, or the next state of a discrete model: one value per state.
+    Derivative,
+    /// y, one value per output.
+    Output,
+    /// z, one value per own coordinate.
+    Coordinates,
+    /// Numbers that follow from the parameters alone (an inverse mass): asked for once,
+    /// then handed to every other question.
+    Derived,
+}
+
+/// Sizes of the slices of a [`Block`], per pack.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sizes {
+    /// Parameters.
+    pub theta: usize,
+    /// States.
+    pub x: usize,
+    /// Inputs.
+    pub u: usize,
+    /// Own channels.
+    pub w: usize,
+    /// Outputs.
+    pub y: usize,
+    /// Own coordinates.
+    pub z: usize,
+    /// Numbers derived from the parameters.
+    pub derived: usize,
+}
+
+impl Sizes {
+    /// The sizes of a model with these signals.
+    pub fn of(signals: &Signals) -> Self {
+        Self {
+            theta: signals.parameters.len(),
+            x: signals.states.len(),
+            u: signals.inputs.len(),
+            w: signals.own_channels().len(),
+            y: signals.outputs.len(),
+            z: signals.own_coordinates().len(),
+            derived: signals.derived,
+        }
+    }
+
+    /// How many values an answer has.
+    pub fn answer(&self, ask: Ask) -> usize {
+        match ask {
+            Ask::Derivative => self.x,
+            Ask::Output => self.y,
+            Ask::Coordinates => self.z,
+            Ask::Derived => self.derived,
+        }
+    }
+}
+
+/// One question to a law for several packs of lanes at once.
+///
+/// Slices are laid out pack by pack: pack `p` of `x` is `x[p * sizes.x..][..sizes.x]`.
+#[derive(Debug, Clone, Copy)]
+pub struct Block<'a, R> {
+    /// Sizes per pack.
+    pub sizes: Sizes,
+    /// Number of packs.
+    pub packs: usize,
+    /// Parameters.
+    pub theta: &'a [R],
+    /// Numbers derived from the parameters; empty when these are asked for.
+    pub derived: &'a [R],
+    /// States.
+    pub x: &'a [R],
+    /// Inputs.
+    pub u: &'a [R],
+    /// What enters the own channels.
+    pub w: &'a [R],
+    /// Time in s, the same for all packs.
+    pub time: R,
+}
+
+/// A block of one of the four kinds of number that models are compiled for, and the slice
+/// that takes the answer: `packs * sizes.answer(ask)` values.
+#[derive(Debug)]
+pub enum Call<'a> {
+    /// Double precision.
+    F64(&'a Block<'a, F64x8>, &'a mut [F64x8]),
+    /// Single precision.
+    F32(&'a Block<'a, F32x16>, &'a mut [F32x16]),
+    /// Double precision with slopes.
+    Dual64(&'a Block<'a, Dual64>, &'a mut [Dual64]),
+    /// Single precision with slopes.
+    Dual32(&'a Block<'a, Dual32>, &'a mut [Dual32]),
+}
+
+/// Double precision with slopes along [`DIRECTIONS`] directions.
+pub type Dual64 = Dual<F64x8, DIRECTIONS>;
+/// Single precision with slopes along [`DIRECTIONS`] directions.
+pub type Dual32 = Dual<F32x16, DIRECTIONS>;
+
+/// A number that a [`Law`] can be called with.
+pub trait LaneNumber: InRegisters {
+    /// Numbers side by side.
+    const LANES: usize;
+    /// Wraps a block of this number for the object-safe call.
+    fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a>;
+    /// Value in one lane, widened.
+    fn lane(&self, lane: usize) -> f64;
+    /// Sets the value in one lane.
+    fn set_lane(&mut self, lane: usize, value: f64);
+    /// A magnitude far below anything that matters but far above the subnormal numbers;
+    /// adding and subtracting it flushes what would slow the processor down.
+    const FLUSH: f64;
+}
+
+impl LaneNumber for F64x8 {
+    const LANES: usize = 8;
+    const FLUSH: f64 = 1e-120;
+    #[inline(always)]
+    fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a> {
+        Call::F64(block, out)
+    }
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> f64 {
+        self.0[lane]
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, lane: usize, value: f64) {
+        self.0[lane] = value;
+    }
+}
+
+impl LaneNumber for F32x16 {
+    const LANES: usize = 16;
+    const FLUSH: f64 = 1e-25;
+    #[inline(always)]
+    fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a> {
+        Call::F32(block, out)
+    }
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> f64 {
+        f64::from(self.0[lane])
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, lane: usize, value: f64) {
+        self.0[lane] = value as f32;
+    }
+}
+
+impl LaneNumber for Dual64 {
+    const LANES: usize = 8;
+    const FLUSH: f64 = F64x8::FLUSH;
+    #[inline(always)]
+    fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a> {
+        Call::Dual64(block, out)
+    }
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> f64 {
+        self.value.lane(lane)
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, lane: usize, value: f64) {
+        self.value.set_lane(lane, value);
+    }
+}
+
+impl LaneNumber for Dual32 {
+    const LANES: usize = 16;
+    const FLUSH: f64 = F32x16::FLUSH;
+    #[inline(always)]
+    fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a> {
+        Call::Dual32(block, out)
+    }
+    #[inline(always)]
+    fn lane(&self, lane: usize) -> f64 {
+        self.value.lane(lane)
+    }
+    #[inline(always)]
+    fn set_lane(&mut self, lane: usize, value: f64) {
+        self.value.set_lane(lane, value);
+    }
+}
+
+/// The matrices of a law that is linear in states, inputs and channels (dx/dt, or the next
+/// state, = A x + B u + G w + f; y = C x + D u + h), at one value of the parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Matrices {
+    /// States to derivatives.
+    pub a: nalgebra::DMatrix<f64>,
+    /// Inputs to derivatives.
+    pub b: nalgebra::DMatrix<f64>,
+    /// Own channels to derivatives.
+    pub g: nalgebra::DMatrix<f64>,
+    /// Constant part of the derivatives.
+    pub f: nalgebra::DVector<f64>,
+    /// States to outputs.
+    pub c: nalgebra::DMatrix<f64>,
+    /// Inputs to outputs.
+    pub d: nalgebra::DMatrix<f64>,
+    /// Constant part of the outputs.
+    pub h: nalgebra::DVector<f64>,
+}
+
+/// A value in a model's own table that cannot be right.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// Key path inside the model's table.
+    pub key: String,
+    /// What stands there.
+    pub found: String,
+    /// What should stand there.
+    pub expected: String,
+}
+
+impl Fault {
+    /// A fault of one key.
+    pub fn new(
+        key: impl Into<String>,
+        found: impl std::fmt::Display,
+        expected: impl Into<String>,
+    ) -> Self {
+        Self { key: key.into(), found: found.to_string(), expected: expected.into() }
+    }
+
+    /// Faults of the values among these that are not positive finite numbers.
+    pub fn unless_positive(values: &[(&str, f64)]) -> Vec<Self> {
+        let bad = values.iter().filter(|(_, v)| !(*v > 0.0 && v.is_finite()));
+        bad.map(|&(key, value)| Self::new(key, value, "a positive number")).collect()
+    }
+}
+
+/// What a model does in one instant, for whole blocks of lanes.
+///
+/// Written by hand only where [`Physics`](super::Physics) does not fit (a program that is
+/// interpreted, say); everything that implements `Physics` has it.
+pub trait Law: Debug + Send + Sync {
+    /// Names, units, bounds, initial values.
+    fn signals(&self) -> Signals;
+
+    /// Everything that cannot be right about the model's values; `signals` and `answer`
+    /// are only called when this is empty.
+    fn faults(&self) -> Vec<Fault> {
+        vec![]
+    }
+
+    /// Answers one question for one block.
+    fn answer(&self, ask: Ask, call: Call<'_>);
+
+    /// The matrices where the law is linear in states and inputs, so that it can be
+    /// discretised exactly; `theta` holds the parameters.
+    fn matrices(&self, theta: &[f64]) -> Option<Matrices> {
+        let _ = theta;
+        None
+    }
+
+    /// Packs of lanes that this law likes to be called with at once.
+    fn packs(&self) -> usize {
+        2
+    }
+
+    /// The gain of the innovation form, x+ = A x + B u + K e, where there is one.
+    fn innovation_gain(&self) -> Option<nalgebra::DMatrix<f64>> {
+        None
+    }
+}

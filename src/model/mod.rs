@@ -1,0 +1,34 @@
+//! What a system does in one instant, known or supposed.
+//!
+//! A model has two faces. People write [`Physics`], generic in its number, in the letters
+//! of the textbook. The library calls [`Law`], which is object-safe and answers for whole
+//! blocks of lanes at once; a blanket implementation turns the first into the second.
+//! [`StateSpaceModel`] is the registered trait: empty, with `Law` below it.
+
+mod law;
+pub mod lti;
+pub mod linearised;
+mod physics;
+pub(crate) mod probe;
+mod signals;
+
+pub use law::{Ask, Block, Call, DIRECTIONS, Dual32, Dual64, Fault, LaneNumber, Law, Matrices, Sizes};
+pub use physics::{At, Physics};
+pub use signals::{Parameter, Quantity, Signal, Signals, State, TimeKind};
+
+/// A state-space model x' = f(x, u, w), y = h(x, u) that model files can name.
+///
+/// Implement [`Physics`] (or, rarely, [`Law`]) and let
+/// [`register!`](crate::register!) fill this in.
+#[typetag::serde]
+pub trait StateSpaceModel: Law {}
+
+/// A copy through the model's own serialised form.
+///
+/// # Errors
+///
+/// If the model does not survive its own serialisation, which the contract test rules out
+/// for registered models.
+pub fn copied(model: &dyn StateSpaceModel) -> Result<Box<dyn StateSpaceModel>, serde_json::Error> {
+    serde_json::from_value(serde_json::to_value(model)?)
+}

@@ -1,0 +1,256 @@
+//! The face of a model that people write: generic in its number.
+
+use std::fmt::Debug;
+
+use super::law::{Ask, Block, Call, Fault, Law, Matrices};
+use super::{Signals, TimeKind};
+use crate::per_lanes;
+use crate::real::{InRegisters, Real};
+
+/// Everything a law may look at in one instant.
+///
+/// Slices keep the order of declaration in [`Signals`]. The methods hand out arrays, so
+/// that the textbook's letters can be written on the left:
+/// `let &[mass, damping] = at.parameters();`
+#[derive(Debug, Clone, Copy)]
+pub struct At<'a, R> {
+    /// Parameters.
+    pub theta: &'a [R],
+    /// What [`Physics::derive`] made of them.
+    pub derived: &'a [R],
+    /// States.
+    pub x: &'a [R],
+    /// Inputs.
+    pub u: &'a [R],
+    /// What enters the declared channels; all zero while nothing is missing.
+    pub w: &'a [R],
+    /// Time since the first sample, in s.
+    pub time: R,
+}
+
+impl<'a, R> At<'a, R> {
+    /// The parameters as an array.
+    #[inline(always)]
+    #[track_caller]
+    pub fn parameters<const N: usize>(&self) -> &'a [R; N] {
+        exactly(self.theta, "parameters")
+    }
+
+    /// The states as an array.
+    #[inline(always)]
+    #[track_caller]
+    pub fn states<const N: usize>(&self) -> &'a [R; N] {
+        exactly(self.x, "states")
+    }
+
+    /// The inputs as an array.
+    #[inline(always)]
+    #[track_caller]
+    pub fn inputs<const N: usize>(&self) -> &'a [R; N] {
+        exactly(self.u, "inputs")
+    }
+
+    /// What enters the channels as an array.
+    #[inline(always)]
+    #[track_caller]
+    pub fn channels<const N: usize>(&self) -> &'a [R; N] {
+        exactly(self.w, "channels")
+    }
+}
+
+#[inline(always)]
+#[track_caller]
+fn exactly<'a, R, const N: usize>(slice: &'a [R], what: &'static str) -> &'a [R; N] {
+    match slice.try_into() {
+        Ok(array) => array,
+        Err(_) => miscounted(what, slice.len(), N),
+    }
+}
+
+#[cold]
+#[track_caller]
+fn miscounted(what: &str, declared: usize, taken: usize) -> ! {
+    panic!("this model declares {declared} {what} in `signals` but its law takes {taken}")
+}
+
+/// A physical system, written once in any kind of number.
+///
+/// Put `#[inline(always)]` on the two laws and on their helpers: only then are they
+/// compiled with the processor's vector instructions.
+///
+/// # Example
+///
+/// ```
+/// use lacuna::prelude::*;
+///
+/// #[derive(Debug, Clone, Serialize, Deserialize)]
+/// #[serde(deny_unknown_fields)]
+/// struct Pendulum {
+///     length: f64,
+///     damping: f64,
+/// }
+///
+/// impl Physics for Pendulum {
+///     fn signals(&self) -> Signals {
+///         Signals::continuous()
+///             .input("acceleration", "rad/s^2")
+///             .state("theta", "rad", 0.0)
+///             .state("omega", "rad/s", 0.0)
+///             .output("angle", "rad")
+///             .parameter_from("length", self.length, "m", 0.0)
+///             .parameter_from("damping", self.damping, "1/s", 0.0)
+///     }
+///     #[inline(always)]
+///     fn derivative<R: Real>(&self, at: &At<R>, dx: &mut [R]) {
+///         let &[length, damping] = at.parameters();
+///         let &[theta, omega] = at.states();
+///         let &[acceleration] = at.inputs();
+///         dx[0] = omega;
+///         dx[1] = acceleration - R::constant(9.81) / length * theta.sin() - damping * omega;
+///     }
+///     #[inline(always)]
+///     fn output<R: Real>(&self, at: &At<R>, y: &mut [R]) {
+///         y[0] = at.x[0];
+///     }
+/// }
+///
+/// lacuna::register!(StateSpaceModel for Pendulum, "my_pendulum", "a swinging arm");
+/// ```
+pub trait Physics: Debug + Send + Sync {
+    /// Names, units, bounds, initial values. Called once per run, not per sample.
+    fn signals(&self) -> Signals;
+
+    /// Everything that cannot be right about the values (a negative mass, lists of
+    /// different length); the laws are only called when this is empty.
+    fn faults(&self) -> Vec<Fault> {
+        vec![]
+    }
+
+    /// Numbers that follow from the parameters alone, computed once per run instead of in
+    /// every stage; the laws find them in [`At::derived`]. Say how many with
+    /// [`Signals::deriving`].
+    #[inline(always)]
+    fn derive<R: Real>(&self, theta: &[R], derived: &mut [R]) {
+        let _ = (theta, derived);
+    }
+
+    /// dx/dt (or the next state, where `signals` says discrete), one value per state.
+    fn derivative<R: Real>(&self, at: &At<R>, dx: &mut [R]);
+
+    /// The outputs, one value each.
+    fn output<R: Real>(&self, at: &At<R>, y: &mut [R]);
+
+    /// The declared coordinates, one value each; needed only where some are declared.
+    #[inline(always)]
+    fn coordinates<R: Real>(&self, at: &At<R>, z: &mut [R]) {
+        z.copy_from_slice(&at.x[..z.len()]);
+    }
+
+    /// The matrices, where the law is linear in states and inputs at given parameters.
+    fn matrices(&self, theta: &[f64]) -> Option<Matrices> {
+        let _ = theta;
+        None
+    }
+
+    /// The gain K of an innovation form, where there is one.
+    fn innovation_gain(&self) -> Option<nalgebra::DMatrix<f64>> {
+        None
+    }
+}
+
+impl<P: Physics> Law for P {
+    fn signals(&self) -> Signals {
+        Physics::signals(self)
+    }
+
+    fn faults(&self) -> Vec<Fault> {
+        Physics::faults(self)
+    }
+
+    fn answer(&self, ask: Ask, call: Call<'_>) {
+        match call {
+            Call::F64(block, out) => run(self, ask, block, out),
+            Call::F32(block, out) => run(self, ask, block, out),
+            Call::Dual64(block, out) => run(self, ask, block, out),
+            Call::Dual32(block, out) => run(self, ask, block, out),
+        }
+    }
+
+    fn matrices(&self, theta: &[f64]) -> Option<Matrices> {
+        Physics::matrices(self, theta)
+    }
+
+    fn innovation_gain(&self) -> Option<nalgebra::DMatrix<f64>> {
+        Physics::innovation_gain(self)
+    }
+}
+
+/// One question to all packs: a function of its own for each, so that none carries the
+/// others' bookkeeping along.
+fn run<P: Physics, R: InRegisters>(physics: &P, ask: Ask, block: &Block<'_, R>, out: &mut [R]) {
+    match ask {
+        Ask::Derivative => derivatives(physics, block, out),
+        Ask::Output => outputs(physics, block, out),
+        Ask::Coordinates => coordinates(physics, block, out),
+        Ask::Derived => derived(physics, block, out),
+    }
+}
+
+impl<'a, R: Real> Block<'a, R> {
+    /// What one pack looks at.
+    #[inline(always)]
+    fn at(&self, pack: usize) -> At<'a, R> {
+        let n = self.sizes;
+        At {
+            theta: &self.theta[pack * n.theta..][..n.theta],
+            derived: &self.derived[pack * n.derived..][..n.derived],
+            x: &self.x[pack * n.x..][..n.x],
+            u: &self.u[pack * n.u..][..n.u],
+            w: &self.w[pack * n.w..][..n.w],
+            time: self.time,
+        }
+    }
+}
+
+per_lanes! {
+    fn derivatives[P: Physics,; R](physics: &P, block: &Block<'_, R>, out: &mut [R]) {
+        let n = block.sizes.x;
+        for pack in 0..block.packs {
+            physics.derivative(&block.at(pack), &mut out[pack * n..][..n]);
+        }
+    }
+}
+
+per_lanes! {
+    fn outputs[P: Physics,; R](physics: &P, block: &Block<'_, R>, out: &mut [R]) {
+        let n = block.sizes.y;
+        for pack in 0..block.packs {
+            physics.output(&block.at(pack), &mut out[pack * n..][..n]);
+        }
+    }
+}
+
+per_lanes! {
+    fn coordinates[P: Physics,; R](physics: &P, block: &Block<'_, R>, out: &mut [R]) {
+        let n = block.sizes.z;
+        for pack in 0..block.packs {
+            physics.coordinates(&block.at(pack), &mut out[pack * n..][..n]);
+        }
+    }
+}
+
+per_lanes! {
+    fn derived[P: Physics,; R](physics: &P, block: &Block<'_, R>, out: &mut [R]) {
+        let (from, n) = (block.sizes.theta, block.sizes.derived);
+        for pack in 0..block.packs {
+            physics.derive(&block.theta[pack * from..][..from], &mut out[pack * n..][..n]);
+        }
+    }
+}
+
+impl TimeKind {
+    /// Whether the law gives derivatives.
+    pub fn is_continuous(self) -> bool {
+        self == Self::Continuous
+    }
+}

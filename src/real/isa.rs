@@ -1,0 +1,147 @@
+//! Which vector instructions this processor has.
+
+use std::sync::OnceLock;
+
+/// The instruction set that block kernels are run with.
+///
+/// The program is built for plain x86-64 (or any other processor) and picks wider
+/// kernels at run time. Results are the same to the last bit in all of them, because
+/// none fuses a multiplication with an addition behind the author's back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Isa {
+    /// What every processor of the target has.
+    Baseline,
+    /// AVX2 and FMA.
+    Avx2,
+    /// AVX-512 F, DQ and VL.
+    Avx512,
+}
+
+impl Isa {
+    /// The widest instruction set of this processor, found once.
+    ///
+    /// The environment variable `LACUNA_ISA` (`baseline`, `avx2`, `avx512`) lowers it,
+    /// for measurements.
+    pub fn detect() -> Self {
+        static FOUND: OnceLock<Isa> = OnceLock::new();
+        *FOUND.get_or_init(|| {
+            let has = Self::of_processor();
+            match std::env::var("LACUNA_ISA").as_deref() {
+                Ok("baseline") => Self::Baseline,
+                Ok("avx2") => has.min(Self::Avx2),
+                _ => has,
+            }
+        })
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn of_processor() -> Self {
+        let avx2 = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
+            && is_x86_feature_detected!("bmi1")
+            && is_x86_feature_detected!("bmi2");
+        let avx512 = is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512vl");
+        match (avx2, avx512) {
+            (true, true) => Self::Avx512,
+            (true, false) => Self::Avx2,
+            _ => Self::Baseline,
+        }
+    }
+
+    #[cfg(not(target_arch = "x86_64"))]
+    fn of_processor() -> Self {
+        Self::Baseline
+    }
+}
+
+/// Defines a function compiled once per instruction set and a dispatcher in front.
+///
+/// The body must be `#[inline(always)]` all the way down, or it falls back to plain
+/// instructions without a word.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! per_isa {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident [$($generic:tt)*] ($($arg:ident : $ty:ty),* $(,)?) $(-> $ret:ty)? $body:block) => {
+        $(#[$meta])*
+        $vis fn $name<$($generic)*>($($arg: $ty),*) $(-> $ret)? {
+            #[inline(always)]
+            fn body<$($generic)*>($($arg: $ty),*) $(-> $ret)? $body
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx2,fma,bmi1,bmi2")]
+                fn avx2<$($generic)*>($($arg: $ty),*) $(-> $ret)? { body($($arg),*) }
+                #[target_feature(enable = "avx2,fma,bmi1,bmi2,avx512f,avx512dq,avx512vl")]
+                fn avx512<$($generic)*>($($arg: $ty),*) $(-> $ret)? { body($($arg),*) }
+                match $crate::real::Isa::detect() {
+                    // SAFETY: `detect` saw these features on this processor.
+                    $crate::real::Isa::Avx512 => unsafe { avx512($($arg),*) },
+                    // SAFETY: as above.
+                    $crate::real::Isa::Avx2 => unsafe { avx2($($arg),*) },
+                    $crate::real::Isa::Baseline => body($($arg),*),
+                }
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            {
+                body($($arg),*)
+            }
+        }
+    };
+}
+
+/// Looks at the same memory as another type of the same size.
+///
+/// # Safety
+///
+/// Only between a type made of lanes and the same type made of registers.
+#[doc(hidden)]
+#[inline(always)]
+pub unsafe fn recast<A, B>(from: A) -> B {
+    const { assert!(std::mem::size_of::<A>() == std::mem::size_of::<B>()) };
+    let from = std::mem::ManuallyDrop::new(from);
+    // SAFETY: same size (above), same layout (the caller's promise).
+    unsafe { std::mem::transmute_copy(&from) }
+}
+
+/// Defines a kernel generic in its number: compiled once per instruction set, with the
+/// numbers in registers, and a dispatcher in front. The last generic is the number; the
+/// other arguments may mention it only behind references or by value.
+///
+/// The body must be `#[inline(always)]` all the way down, or it falls back to plain
+/// instructions without a word.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! per_lanes {
+    ($(#[$meta:meta])* $vis:vis fn $name:ident [$($generic:ident : $bound:path,)* ; $number:ident] ($($arg:ident : $ty:ty),* $(,)?) $(-> $ret:ty)? $body:block) => {
+        $(#[$meta])*
+        $vis fn $name<$($generic: $bound,)* $number: $crate::real::InRegisters>($($arg: $ty),*) $(-> $ret)? {
+            #[inline(always)]
+            fn body<$($generic: $bound,)* $number: $crate::real::Real>($($arg: $ty),*) $(-> $ret)? $body
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx2,fma,bmi1,bmi2")]
+                fn avx2<$($generic: $bound,)* $number: $crate::real::InRegisters>($($arg: $ty),*) $(-> $ret)? {
+                    // SAFETY: registers of this processor with the layout of the lanes.
+                    unsafe { body::<$($generic,)* $number::Avx2>($($crate::real::recast($arg)),*) }
+                }
+                #[target_feature(enable = "avx2,fma,bmi1,bmi2,avx512f,avx512dq,avx512vl")]
+                fn avx512<$($generic: $bound,)* $number: $crate::real::InRegisters>($($arg: $ty),*) $(-> $ret)? {
+                    // SAFETY: registers of this processor with the layout of the lanes.
+                    unsafe { body::<$($generic,)* $number::Avx512>($($crate::real::recast($arg)),*) }
+                }
+                match $crate::real::Isa::detect() {
+                    // SAFETY: `detect` saw these features on this processor.
+                    $crate::real::Isa::Avx512 => unsafe { avx512::<$($generic,)* $number>($($arg),*) },
+                    // SAFETY: as above.
+                    $crate::real::Isa::Avx2 => unsafe { avx2::<$($generic,)* $number>($($arg),*) },
+                    $crate::real::Isa::Baseline => body::<$($generic,)* $number>($($arg),*),
+                }
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            {
+                body::<$($generic,)* $number>($($arg),*)
+            }
+        }
+    };
+}

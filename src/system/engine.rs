@@ -1,0 +1,487 @@
+//! The simulation: groups of lanes, each with its own effects, through one law.
+
+use crate::model::{Ask, Block, LaneNumber, Law};
+use crate::per_lanes;
+use crate::real::Real;
+
+use super::exact::Exact;
+use super::group::{Group, Instant};
+use super::lane::{Drive, Lane, Track};
+use super::plan::Plan;
+use super::sampling::{Hold, Method};
+use super::wiring::EffectNumber;
+
+/// Magnitude beyond which a state counts as diverged.
+const BEYOND: f64 = 1e150;
+
+/// Simulates groups of lanes over all segments of a drive; all plans share one base.
+///
+/// With `seen`, every lane also records the table of sources at every sample.
+pub(crate) fn simulate<R: EffectNumber>(
+    law: &dyn Law,
+    drive: &Drive,
+    groups: &[(&Plan, &[Lane])],
+    seen: bool,
+) -> Vec<Vec<Track>> {
+    let Some(mut run) = Run::<R>::new(law, groups) else { return vec![] };
+    let n = drive.len();
+    let base = groups[0].0;
+    let blank = |count: usize| vec![vec![f64::NAN; n]; count];
+    let track = |_: &Lane| Track {
+        y: blank(base.sizes.y),
+        diverged_at: None,
+        seen: blank(if seen { base.sources.entries.len() } else { 0 }),
+        last: vec![],
+    };
+    let mut tracks: Vec<Vec<Track>> =
+        groups.iter().map(|(_, lanes)| lanes.iter().map(track).collect()).collect();
+    for (number, segment) in drive.segments.iter().enumerate() {
+        run.start(groups, number);
+        for k in segment.clone() {
+            run.sample(drive, k, segment.end, &mut tracks);
+            if tracks.iter().flatten().all(|track| track.diverged_at.is_some()) {
+                break;
+            }
+        }
+    }
+    run.last(&mut tracks);
+    tracks
+}
+
+/// Spreads one value per lane over packs; lanes beyond the last repeat it.
+pub(crate) fn pack<R: LaneNumber>(
+    lanes: &[Lane],
+    packs: usize,
+    width: usize,
+    get: impl Fn(&Lane, usize) -> f64,
+) -> Vec<R> {
+    let mut out = vec![R::constant(0.0); packs * width];
+    let last = lanes.len().saturating_sub(1);
+    for l in 0..packs * R::LANES {
+        let Some(lane) = lanes.get(l.min(last)) else { continue };
+        for i in 0..width {
+            out[l / R::LANES * width + i].set_lane(l % R::LANES, get(lane, i));
+        }
+    }
+    out
+}
+
+/// Working storage of one block: what all packs share.
+struct Run<'a, R> {
+    base: &'a Plan,
+    law: &'a dyn Law,
+    packs: usize,
+    groups: Vec<Group<'a, R>>,
+    theta: Vec<R>,
+    /// Parameters at this instant, where some drift.
+    theta_now: Vec<R>,
+    derived: Vec<R>,
+    x: Vec<R>,
+    xt: Vec<R>,
+    k: [Vec<R>; 4],
+    u: [Vec<R>; 3],
+    /// Inputs with what effects add, and what enters the own channels.
+    u_in: Vec<R>,
+    w: Vec<R>,
+    y: Vec<R>,
+    sums: Vec<R>,
+    exact: Option<Exact<R>>,
+    /// Whether any effect acts inside the stages.
+    inside: bool,
+    fine: bool,
+    /// Whether parameters drift, and whether nothing has been computed yet.
+    drifting: bool,
+    first_ever: bool,
+    first: bool,
+    time: f64,
+}
+
+impl<'a, R: EffectNumber> Run<'a, R> {
+    fn new(law: &'a dyn Law, groups: &[(&'a Plan, &[Lane])]) -> Option<Self> {
+        let (base, _) = *groups.first()?;
+        let n = base.sizes;
+        let (mut packs, mut theta, mut all) = (0, vec![], vec![]);
+        let mut made = vec![];
+        for &(plan, lanes) in groups {
+            let group = Group::<R>::new(plan, lanes, packs);
+            let mut own = pack::<R>(lanes, group.packs, n.theta, |lane, i| lane.theta[i]);
+            group.set_values(&mut own);
+            theta.extend(own);
+            // the exact step needs a lane for every place, also for those that repeat
+            let last = lanes.len().saturating_sub(1);
+            all.extend((0..group.packs * R::LANES).filter_map(|l| lanes.get(l.min(last))));
+            packs += group.packs;
+            made.push(group);
+        }
+        let zeros = |count: usize| vec![R::constant(0.0); packs * count];
+        Some(Self {
+            exact: base.linear.then(|| Exact::new(base, law, &all, packs)).flatten(),
+            inside: made.iter().any(|group| group.inside),
+            drifting: made.iter().any(Group::is_drifting),
+            first_ever: true,
+            fine: made.iter().any(|group| group.outputs.fine),
+            theta_now: theta.clone(),
+            groups: made,
+            base,
+            law,
+            packs,
+            theta,
+            derived: zeros(n.derived),
+            x: zeros(n.x),
+            xt: zeros(n.x),
+            k: [zeros(n.x), zeros(n.x), zeros(n.x), zeros(n.x)],
+            u: [zeros(n.u), zeros(n.u), zeros(n.u)],
+            u_in: zeros(n.u),
+            w: zeros(n.w),
+            y: zeros(n.y),
+            sums: zeros(1),
+            first: true,
+            time: 0.0,
+        })
+    }
+
+    /// Puts every lane at the start of a segment.
+    fn start(&mut self, groups: &[(&Plan, &[Lane])], segment: usize) {
+        let n = self.base.sizes.x;
+        let initial = self.base.signals.initial();
+        for (group, (_, lanes)) in self.groups.iter_mut().zip(groups) {
+            let x = pack::<R>(lanes, group.packs, n, |lane, i| {
+                lane.starts.get(segment).or(lane.starts.last()).map_or(initial[i], |x| x[i])
+            });
+            self.x[group.first * n..][..x.len()].copy_from_slice(&x);
+            group.restart();
+        }
+        self.first = true;
+    }
+
+    /// Gives the outputs at sample `k` and moves to the next one.
+    fn sample(&mut self, drive: &Drive, k: usize, end: usize, tracks: &mut [Vec<Track>]) {
+        let base = self.base;
+        let h = base.step();
+        for j in 0..base.substeps {
+            self.time = k as f64 * base.sampling_time + j as f64 * h;
+            self.drift(self.time);
+            self.drive(drive, k, end, j);
+            for group in &mut self.groups {
+                group.inputs(&mut self.u, h);
+            }
+            if j == 0 || self.fine {
+                self.output(h);
+            }
+            if j == 0 {
+                self.store(k, tracks);
+            }
+            self.advance(h);
+            self.first = false;
+            for group in &mut self.groups {
+                group.started();
+            }
+        }
+        self.watch(k, tracks);
+    }
+
+    /// Inputs at the start, middle and end of step `j`.
+    fn drive(&mut self, drive: &Drive, k: usize, end: usize, j: usize) {
+        let base = self.base;
+        let next = if k + 1 < end { k + 1 } else { k };
+        if base.hold == Hold::Zero && j > 0 && !self.groups.iter().any(|g| g.has_input_paths()) {
+            return; // still there from the first step
+        }
+        for (i, series) in drive.inputs.iter().enumerate() {
+            for (slot, at) in [0.0, 0.5, 1.0].into_iter().enumerate() {
+                let share = (j as f64 + at) / base.substeps as f64;
+                let value = match base.hold {
+                    Hold::Zero => series[k],
+                    Hold::First => series[k] + (series[next] - series[k]) * share,
+                };
+                for pack in 0..self.packs {
+                    self.u[slot][pack * base.sizes.u + i] = R::constant(value);
+                }
+            }
+        }
+    }
+
+    /// Parameters at a given time, and what the law derives from them.
+    fn drift(&mut self, time: f64) {
+        if !self.first_ever && !self.drifting {
+            return;
+        }
+        self.first_ever = false;
+        for group in &self.groups {
+            group.drift(time, &self.theta, &mut self.theta_now);
+        }
+        if self.base.sizes.derived > 0 {
+            let block = Block {
+                sizes: self.base.sizes,
+                packs: self.packs,
+                theta: &self.theta_now,
+                derived: &[],
+                x: &self.x,
+                u: &self.u[0],
+                w: &self.w,
+                time: R::constant(time),
+            };
+            self.law.answer(Ask::Derived, R::call(&block, &mut self.derived));
+        }
+    }
+
+    /// Asks the law at the present or the trial state.
+    fn ask(&mut self, ask: Ask, slot: usize, time: f64) {
+        self.w.fill(R::constant(0.0));
+        let block = Block {
+            sizes: self.base.sizes,
+            packs: self.packs,
+            theta: &self.theta_now,
+            derived: &self.derived,
+            x: &self.x,
+            u: &self.u[slot],
+            w: &self.w,
+            time: R::constant(time),
+        };
+        self.law.answer(ask, R::call(&block, &mut self.y));
+    }
+
+    /// Outputs now, after everything that sits in their paths.
+    fn output(&mut self, h: f64) {
+        self.ask(Ask::Output, 0, self.time);
+        let (nx, nu, ny) = (self.base.sizes.x, self.base.sizes.u, self.base.sizes.y);
+        for group in &mut self.groups {
+            let packs = group.first..group.first + group.packs;
+            let at = Instant {
+                law: self.law,
+                theta: group.share(&self.theta_now, self.base.sizes.theta),
+                derived: group.share(&self.derived, self.base.sizes.derived),
+                x: &self.x[packs.start * nx..packs.end * nx],
+                u: &self.u[0][packs.start * nu..packs.end * nu],
+                time: R::constant(self.time),
+            };
+            let y = &mut self.y[packs.start * ny..packs.end * ny];
+            group.outputs(&at, y, h, self.first);
+        }
+    }
+
+    fn store(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
+        let ny = self.base.sizes.y;
+        for (group, tracks) in self.groups.iter().zip(tracks.iter_mut()) {
+            for (l, track) in tracks.iter_mut().enumerate() {
+                if track.diverged_at.is_some() {
+                    continue;
+                }
+                let (pack, lane) = (group.first + l / R::LANES, l % R::LANES);
+                for (o, series) in track.y.iter_mut().enumerate() {
+                    series[k] = self.y[pack * ny + o].lane(lane);
+                    if !series[k].is_finite() {
+                        track.diverged_at = Some(k);
+                    }
+                }
+            }
+        }
+        if tracks.iter().flatten().any(|track| !track.seen.is_empty()) {
+            self.see(k, tracks);
+        }
+    }
+
+    /// Records the table of sources.
+    fn see(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
+        let base = self.base;
+        let (nx, nu) = (base.sizes.x, base.sizes.u);
+        for (group, tracks) in self.groups.iter_mut().zip(tracks) {
+            let packs = group.first..group.first + group.packs;
+            let at = Instant {
+                law: self.law,
+                theta: group.share(&self.theta_now, base.sizes.theta),
+                derived: group.share(&self.derived, base.sizes.derived),
+                x: &self.x[packs.start * nx..packs.end * nx],
+                u: &self.u[0][packs.start * nu..packs.end * nu],
+                time: R::constant(self.time),
+            };
+            let table = group.table(&at);
+            let entries = base.sources.entries.len();
+            for (l, track) in tracks.iter_mut().enumerate() {
+                for (i, series) in track.seen.iter_mut().enumerate() {
+                    series[k] = table[l / R::LANES * entries + i].lane(l % R::LANES);
+                }
+            }
+        }
+    }
+
+    /// Marks lanes whose state is no longer finite, and flushes what would be subnormal.
+    fn watch(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
+        flush(&mut self.x, R::FLUSH);
+        magnitude(&self.x, self.base.sizes.x, &mut self.sums);
+        for (group, tracks) in self.groups.iter_mut().zip(tracks) {
+            flush(&mut group.s, R::FLUSH);
+            for (l, track) in tracks.iter_mut().enumerate() {
+                let size = self.sums[group.first + l / R::LANES].lane(l % R::LANES);
+                if track.diverged_at.is_none() && !(size < BEYOND) {
+                    track.diverged_at = Some(k + 1);
+                }
+            }
+        }
+    }
+
+    /// Rates of all states at a trial state: stage `i`, with the inputs at `slot`.
+    fn stage(&mut self, i: usize, slot: usize, time: f64) {
+        let base = self.base;
+        let n = base.sizes;
+        self.drift(time);
+        let x = if i == 0 { &self.x } else { &self.xt };
+        let mut u = &self.u[slot];
+        if self.inside {
+            self.u_in.copy_from_slice(u);
+            self.w.fill(R::constant(0.0));
+            for group in self.groups.iter_mut().filter(|group| group.inside) {
+                let packs = group.first..group.first + group.packs;
+                let at = Instant {
+                    law: self.law,
+                    theta: group.share(&self.theta_now, n.theta),
+                    derived: group.share(&self.derived, n.derived),
+                    x: &x[packs.start * n.x..packs.end * n.x],
+                    u: &u[packs.start * n.u..packs.end * n.u],
+                    time: R::constant(time),
+                };
+                let w = &mut self.w[packs.start * n.w..packs.end * n.w];
+                let u_in = &mut self.u_in[packs.start * n.u..packs.end * n.u];
+                group.enter(&at, i, w, u_in);
+            }
+            u = &self.u_in;
+        }
+        if let Some(exact) = &mut self.exact {
+            exact.note(i, u, &self.u[slot], &self.w);
+            return;
+        }
+        let out = &mut self.k[i];
+        let block = Block {
+            sizes: n,
+            packs: self.packs,
+            theta: &self.theta_now,
+            derived: &self.derived,
+            x,
+            u,
+            w: &self.w,
+            time: R::constant(time),
+        };
+        self.law.answer(Ask::Derivative, R::call(&block, out));
+        if !base.declared_channels && self.inside {
+            add(out, &self.w);
+        }
+    }
+
+    /// One integration step, or one sample of a discrete law.
+    fn advance(&mut self, h: f64) {
+        let (t, base) = (self.time, self.base);
+        self.w.fill(R::constant(0.0));
+        if let (Some(exact), false) = (&self.exact, self.inside) {
+            exact.finish(&mut self.x, &self.u, false);
+            return;
+        }
+        self.stage(0, 0, t);
+        if !base.signals.time.is_continuous() {
+            std::mem::swap(&mut self.x, &mut self.k[0]);
+        } else if base.method == Method::Euler && self.exact.is_none() {
+            move_along(&mut self.x, &self.k[0], h);
+        } else {
+            self.trial(0, h, 0.5);
+            self.stage(1, 1, t + 0.5 * h);
+            self.trial(1, h, 0.5);
+            self.stage(2, 1, t + 0.5 * h);
+            self.trial(2, h, 1.0);
+            self.stage(3, 2, t + h);
+            if let Some(exact) = &self.exact {
+                exact.finish(&mut self.x, &self.u, true);
+            } else {
+                rk4(&mut self.x, &self.k, h);
+            }
+            for group in &mut self.groups {
+                rk4(&mut group.s, &group.ks, h);
+                group.commit();
+            }
+            return;
+        }
+        for group in &mut self.groups {
+            move_along(&mut group.s, &group.ks[0], h);
+            group.commit();
+        }
+    }
+
+    /// The trial state after stage `i`.
+    fn trial(&mut self, i: usize, h: f64, share: f64) {
+        if let Some(exact) = &self.exact {
+            exact.trial(i, &mut self.xt, &self.x, &self.u);
+        } else {
+            euler(&mut self.xt, &self.x, &self.k[i], h * share);
+        }
+        for group in self.groups.iter_mut().filter(|group| !group.s.is_empty()) {
+            euler(&mut group.st, &group.s, &group.ks[i], h * share);
+        }
+    }
+
+    /// Hands out the states after the last sample.
+    fn last(&self, tracks: &mut [Vec<Track>]) {
+        let n = self.base.sizes.x;
+        for (group, tracks) in self.groups.iter().zip(tracks) {
+            for (l, track) in tracks.iter_mut().enumerate() {
+                let pack = group.first + l / R::LANES;
+                track.last = (0..n).map(|i| self.x[pack * n + i].lane(l % R::LANES)).collect();
+            }
+        }
+    }
+}
+
+per_lanes! {
+    /// to = from + rate * h
+    fn euler[; R](to: &mut [R], from: &[R], rate: &[R], h: f64) {
+        for ((to, &from), &rate) in to.iter_mut().zip(from).zip(rate) {
+            *to = from + rate * h;
+        }
+    }
+}
+
+per_lanes! {
+    /// x += rate * h
+    fn move_along[; R](x: &mut [R], rate: &[R], h: f64) {
+        for (x, &rate) in x.iter_mut().zip(rate) {
+            *x += rate * h;
+        }
+    }
+}
+
+per_lanes! {
+    /// x += h (k1 + 2 k2 + 2 k3 + k4) / 6
+    fn rk4[; R](x: &mut [R], k: &[Vec<R>; 4], h: f64) {
+        let [a, b, c, d] = k;
+        for ((((x, &a), &b), &c), &d) in x.iter_mut().zip(a).zip(b).zip(c).zip(d) {
+            *x += (a + (b + c) * 2.0 + d) * (h / 6.0);
+        }
+    }
+}
+
+per_lanes! {
+    fn add[; R](to: &mut [R], what: &[R]) {
+        for (to, &what) in to.iter_mut().zip(what) {
+            *to += what;
+        }
+    }
+}
+
+per_lanes! {
+    /// Turns what is far below anything that matters into 0, so that decaying states
+    /// never become subnormal numbers, which the processor handles a hundred times slower.
+    fn flush[; R](x: &mut [R], by: f64) {
+        for x in x {
+            *x = (*x + by) - by;
+        }
+    }
+}
+
+per_lanes! {
+    /// Sum of magnitudes of each pack's `n` values.
+    fn magnitude[; R](x: &[R], n: usize, sums: &mut [R]) {
+        for (pack, sum) in sums.iter_mut().enumerate() {
+            *sum = R::constant(0.0);
+            for &x in &x[pack * n..][..n] {
+                *sum += x.abs();
+            }
+        }
+    }
+}
