@@ -3,8 +3,12 @@
 extern crate self as lacuna;
 
 pub mod fault;
+pub mod data;
+pub mod diagnose;
 pub mod effect;
+pub mod evaluate;
 pub mod model;
+pub mod optimise;
 #[path = "../plugins/mod.rs"]
 pub mod plugins;
 pub mod real;

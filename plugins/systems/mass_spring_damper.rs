@@ -161,6 +161,19 @@ impl Physics for MassSpringDamper {
         faults
     }
 
+    fn key(&self, parameter: &str) -> String {
+        let lists = [
+            ("m", "masses"),
+            ("k", "stiffness"),
+            ("c", "damping"),
+            ("a", "hardening"),
+            ("d", "cubic_damping"),
+        ];
+        let (letter, number) = parameter.split_at(1);
+        let list = lists.iter().find(|(known, _)| *known == letter).map_or(letter, |(_, list)| list);
+        format!("{list}.{}", number.parse::<usize>().map_or(0, |n| n.saturating_sub(1)))
+    }
+
     /// One over every mass.
     #[inline(always)]
     fn derive<R: Real>(&self, theta: &[R], derived: &mut [R]) {

@@ -5,11 +5,13 @@
 //! z is a row of S_zx, w enters by a column of S_xw.
 
 mod card;
+mod curve;
 mod law;
 mod view;
 
 pub use card::{
     EffectCard, Knob, Mechanism, Named, Needs, Places, Role, Search, SignRule, UnitRule,
 };
+pub use curve::curve;
 pub use law::{CandidateEffect, Effect, EffectBlock, EffectCall, Felt, Shape};
 pub use view::View;

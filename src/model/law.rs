@@ -268,6 +268,12 @@ pub trait Law: Debug + Send + Sync {
         2
     }
 
+    /// Where a parameter's value stands in the model's own table: keys and list positions
+    /// joined by dots (`masses.0`).
+    fn key(&self, parameter: &str) -> String {
+        parameter.to_string()
+    }
+
     /// The gain of the innovation form, x+ = A x + B u + K e, where there is one.
     fn innovation_gain(&self) -> Option<nalgebra::DMatrix<f64>> {
         None

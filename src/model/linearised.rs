@@ -170,6 +170,10 @@ impl Law for Linearised {
         }
     }
 
+    fn key(&self, parameter: &str) -> String {
+        format!("of.{}.{}", self.of.typetag_name(), self.of.key(parameter))
+    }
+
     fn matrices(&self, theta: &[f64]) -> Option<Matrices> {
         let (x, u) = self.point()?;
         let sizes = Sizes::of(&self.of.signals());

@@ -226,6 +226,16 @@ impl Physics for Lti {
         self.multiply(at, y, [2, 3]);
     }
 
+    fn key(&self, parameter: &str) -> String {
+        let entries = self.entries();
+        let names = Physics::signals(self).parameters;
+        let at = names.iter().position(|p| p.name == parameter);
+        at.and_then(|at| entries.get(at)).map_or_else(
+            || parameter.to_string(),
+            |&(t, i, j)| format!("{}.{i}.{j}", ["A", "B", "C", "D"][t]),
+        )
+    }
+
     fn matrices(&self, theta: &[f64]) -> Option<Matrices> {
         let (n, _, ny) = self.dimensions();
         let [a, b, c, d] = self.filled(theta);

@@ -23,6 +23,36 @@ pub use signals::{Parameter, Quantity, Signal, Signals, State, TimeKind};
 #[typetag::serde]
 pub trait StateSpaceModel: Law {}
 
+/// The same model with other values of some parameters, written where the model keeps them.
+///
+/// # Errors
+///
+/// If the model does not take these values.
+pub fn with_parameters(
+    model: &dyn StateSpaceModel,
+    changes: &[(String, f64)],
+) -> Result<Box<dyn StateSpaceModel>, serde_json::Error> {
+    let mut tree = serde_json::to_value(model)?;
+    for (parameter, value) in changes {
+        let key = format!("{}.{}", model.typetag_name(), model.key(parameter));
+        let mut at = Some(&mut tree);
+        for part in key.split('.') {
+            at = at.and_then(|node| match part.parse::<usize>() {
+                Ok(index) if node.is_array() => node.get_mut(index),
+                _ => node.get_mut(part),
+            });
+        }
+        match at {
+            Some(entry) => *entry = serde_json::json!(value),
+            None => {
+                let missing = format!("parameter `{parameter}` has no place `{key}` in the model");
+                return Err(serde::de::Error::custom(missing));
+            }
+        }
+    }
+    serde_json::from_value(tree)
+}
+
 /// A copy through the model's own serialised form.
 ///
 /// # Errors

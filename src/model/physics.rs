@@ -152,6 +152,12 @@ pub trait Physics: Debug + Send + Sync {
         None
     }
 
+    /// Where a parameter's value stands in the model's own table: keys and list positions
+    /// joined by dots (`masses.0`); by default the field of the same name.
+    fn key(&self, parameter: &str) -> String {
+        parameter.to_string()
+    }
+
     /// The gain K of an innovation form, where there is one.
     fn innovation_gain(&self) -> Option<nalgebra::DMatrix<f64>> {
         None
@@ -178,6 +184,10 @@ impl<P: Physics> Law for P {
 
     fn matrices(&self, theta: &[f64]) -> Option<Matrices> {
         Physics::matrices(self, theta)
+    }
+
+    fn key(&self, parameter: &str) -> String {
+        Physics::key(self, parameter)
     }
 
     fn innovation_gain(&self) -> Option<nalgebra::DMatrix<f64>> {

@@ -37,6 +37,7 @@ pub(crate) fn simulate<R: EffectNumber>(
         groups.iter().map(|(_, lanes)| lanes.iter().map(track).collect()).collect();
     for (number, segment) in drive.segments.iter().enumerate() {
         run.start(groups, number);
+        run.origin = drive.origins.get(number).copied().unwrap_or(0);
         for k in segment.clone() {
             run.sample(drive, k, segment.end, &mut tracks);
             if tracks.iter().flatten().all(|track| track.diverged_at.is_some()) {
@@ -83,16 +84,21 @@ struct Run<'a, R> {
     /// Inputs with what effects add, and what enters the own channels.
     u_in: Vec<R>,
     w: Vec<R>,
+    no_w: Vec<R>,
     y: Vec<R>,
     sums: Vec<R>,
     exact: Option<Exact<R>>,
     /// Whether any effect acts inside the stages.
     inside: bool,
+    /// Whether any of them enters an input.
+    into_inputs: bool,
     fine: bool,
     /// Whether parameters drift, and whether nothing has been computed yet.
     drifting: bool,
     first_ever: bool,
     first: bool,
+    /// Sample at which time is 0.
+    origin: usize,
     time: f64,
 }
 
@@ -117,6 +123,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         Some(Self {
             exact: base.linear.then(|| Exact::new(base, law, &all, packs)).flatten(),
             inside: made.iter().any(|group| group.inside),
+            into_inputs: made.iter().any(Group::enters_inputs),
             drifting: made.iter().any(Group::is_drifting),
             first_ever: true,
             fine: made.iter().any(|group| group.outputs.fine),
@@ -133,9 +140,11 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             u: [zeros(n.u), zeros(n.u), zeros(n.u)],
             u_in: zeros(n.u),
             w: zeros(n.w),
+            no_w: zeros(n.w),
             y: zeros(n.y),
             sums: zeros(1),
             first: true,
+            origin: 0,
             time: 0.0,
         })
     }
@@ -159,7 +168,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         let base = self.base;
         let h = base.step();
         for j in 0..base.substeps {
-            self.time = k as f64 * base.sampling_time + j as f64 * h;
+            self.time = (k - self.origin.min(k)) as f64 * base.sampling_time + j as f64 * h;
             self.drift(self.time);
             self.drive(drive, k, end, j);
             for group in &mut self.groups {
@@ -227,7 +236,6 @@ impl<'a, R: EffectNumber> Run<'a, R> {
 
     /// Asks the law at the present or the trial state.
     fn ask(&mut self, ask: Ask, slot: usize, time: f64) {
-        self.w.fill(R::constant(0.0));
         let block = Block {
             sizes: self.base.sizes,
             packs: self.packs,
@@ -235,7 +243,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             derived: &self.derived,
             x: &self.x,
             u: &self.u[slot],
-            w: &self.w,
+            w: &self.no_w,
             time: R::constant(time),
         };
         self.law.answer(ask, R::call(&block, &mut self.y));
@@ -328,7 +336,9 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         let x = if i == 0 { &self.x } else { &self.xt };
         let mut u = &self.u[slot];
         if self.inside {
-            self.u_in.copy_from_slice(u);
+            if self.into_inputs {
+                self.u_in.copy_from_slice(u);
+            }
             self.w.fill(R::constant(0.0));
             for group in self.groups.iter_mut().filter(|group| group.inside) {
                 let packs = group.first..group.first + group.packs;
@@ -344,7 +354,9 @@ impl<'a, R: EffectNumber> Run<'a, R> {
                 let u_in = &mut self.u_in[packs.start * n.u..packs.end * n.u];
                 group.enter(&at, i, w, u_in);
             }
-            u = &self.u_in;
+            if self.into_inputs {
+                u = &self.u_in;
+            }
         }
         if let Some(exact) = &mut self.exact {
             exact.note(i, u, &self.u[slot], &self.w);
@@ -370,7 +382,6 @@ impl<'a, R: EffectNumber> Run<'a, R> {
     /// One integration step, or one sample of a discrete law.
     fn advance(&mut self, h: f64) {
         let (t, base) = (self.time, self.base);
-        self.w.fill(R::constant(0.0));
         if let (Some(exact), false) = (&self.exact, self.inside) {
             exact.finish(&mut self.x, &self.u, false);
             return;

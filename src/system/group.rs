@@ -8,8 +8,7 @@ use super::inputs::InputPaths;
 use super::lane::Lane;
 use super::outputs::OutputPaths;
 use super::plan::{Plan, Way};
-use super::tables::Origin;
-use super::wiring::{EffectNumber, Wiring};
+use super::wiring::{EffectNumber, Found, Sight, Wiring, find};
 
 /// What effects may look at in one instant: this group's share of everything.
 pub(crate) struct Instant<'b, R> {
@@ -41,8 +40,8 @@ pub(crate) struct Group<'a, R> {
     drifts: Vec<(usize, usize)>,
     wirings: Vec<Wiring<R>>,
     /// Own coordinates and outputs, where some effect looks at them.
-    coordinates: Option<Vec<R>>,
-    seen_outputs: Option<Vec<R>>,
+    coordinates: Vec<R>,
+    seen_outputs: Vec<R>,
     no_w: Vec<R>,
 }
 
@@ -63,18 +62,13 @@ impl<'a, R: EffectNumber> Group<'a, R> {
         let wirings: Vec<_> = (0..slots)
             .filter_map(|slot| Wiring::new(plan, slot, lanes, packs, &knobs, gains.as_deref()))
             .collect();
-        let looks = |which: fn(&Origin) -> bool| {
-            let entries = wirings.iter().flat_map(Wiring::looks_at);
-            entries.into_iter().any(|entry| which(&plan.sources.entries[entry].1))
-        };
-        // coordinates that are states are read where they are
-        let looks_at_own = wirings.iter().flat_map(Wiring::looks_at).any(|entry| {
-            matches!(plan.sources.entries[entry].1, Origin::Own(i) if plan.own_state[i].is_none())
-        });
+        let looks: Vec<Found> = wirings.iter().flat_map(Wiring::looks_at).collect();
+        let looks_at_own = looks.iter().any(|found| matches!(found, Found::Own(_)));
+        let looks_at_outputs = looks.iter().any(|found| matches!(found, Found::Output(_)));
         Self {
             inside: wirings.iter().any(|wiring| wiring.to_inside),
-            coordinates: looks_at_own.then(|| zeros(plan.sizes.z)),
-            seen_outputs: looks(|o| matches!(o, Origin::Output(_))).then(|| zeros(plan.sizes.y)),
+            coordinates: zeros(if looks_at_own { plan.sizes.z } else { 0 }),
+            seen_outputs: zeros(if looks_at_outputs { plan.sizes.y } else { 0 }),
             inputs: InputPaths::new(plan, &knobs, packs),
             outputs: OutputPaths::new(plan, &knobs, packs),
             drifts: drifts.collect(),
@@ -126,6 +120,11 @@ impl<'a, R: EffectNumber> Group<'a, R> {
         !self.inputs.is_empty()
     }
 
+    /// Whether any effect enters an input from inside.
+    pub fn enters_inputs(&self) -> bool {
+        self.wirings.iter().any(Wiring::enters_inputs)
+    }
+
     pub fn is_drifting(&self) -> bool {
         !self.drifts.is_empty()
     }
@@ -162,11 +161,11 @@ impl<'a, R: EffectNumber> Group<'a, R> {
             };
             at.law.answer(ask, R::call(&block, out));
         };
-        if let Some(coordinates) = &mut self.coordinates {
-            ask(Ask::Coordinates, coordinates);
+        if !self.coordinates.is_empty() {
+            ask(Ask::Coordinates, &mut self.coordinates);
         }
-        if let Some(outputs) = &mut self.seen_outputs {
-            ask(Ask::Output, outputs);
+        if !self.seen_outputs.is_empty() {
+            ask(Ask::Output, &mut self.seen_outputs);
         }
     }
 
@@ -174,9 +173,9 @@ impl<'a, R: EffectNumber> Group<'a, R> {
     pub fn enter(&mut self, at: &Instant<'_, R>, stage: usize, w: &mut [R], u: &mut [R]) {
         self.look(at);
         let s = if stage == 0 { &self.s } else { &self.st };
-        let fetch = fetch(self.plan, at, self.coordinates.as_deref(), self.seen_outputs.as_deref());
+        let sight = sight(self.plan, at, &self.coordinates, &self.seen_outputs);
         for wiring in self.wirings.iter_mut().filter(|wiring| wiring.to_inside) {
-            wiring.evaluate(self.plan, s, &fetch);
+            wiring.evaluate(self.plan, s, &sight);
             wiring.write_rates(self.plan, &mut self.ks[stage]);
             wiring.scatter(self.plan, w, u);
         }
@@ -189,10 +188,9 @@ impl<'a, R: EffectNumber> Group<'a, R> {
         }
         if self.wirings.iter().any(|wiring| wiring.to_output) {
             self.look(at);
-            let (coordinates, outputs) = (self.coordinates.as_deref(), self.seen_outputs.as_deref());
-            let fetch = fetch(self.plan, at, coordinates, outputs);
+            let sight = sight(self.plan, at, &self.coordinates, &self.seen_outputs);
             for wiring in self.wirings.iter_mut().filter(|wiring| wiring.to_output) {
-                wiring.evaluate(self.plan, &self.s, &fetch);
+                wiring.evaluate(self.plan, &self.s, &sight);
             }
         }
         let knobs = (&self.knobs[..], self.gains.as_deref());
@@ -209,32 +207,30 @@ impl<'a, R: EffectNumber> Group<'a, R> {
     /// Every entry of the source table, pack by pack.
     pub fn table(&mut self, at: &Instant<'_, R>) -> Vec<R> {
         let n = self.plan.sizes;
-        self.coordinates = Some(vec![R::constant(0.0); self.packs * n.z]);
-        self.seen_outputs = Some(vec![R::constant(0.0); self.packs * n.y]);
+        self.coordinates = vec![R::constant(0.0); self.packs * n.z];
+        self.seen_outputs = vec![R::constant(0.0); self.packs * n.y];
         self.look(at);
-        let fetch = fetch(self.plan, at, self.coordinates.as_deref(), self.seen_outputs.as_deref());
+        let sight = sight(self.plan, at, &self.coordinates, &self.seen_outputs);
         let entries = self.plan.sources.entries.len();
-        (0..self.packs * entries).map(|i| fetch(i / entries, i % entries)).collect()
+        let at = |i: usize| *sight.at(i / entries, find(self.plan, i % entries));
+        (0..self.packs * entries).map(at).collect()
     }
 }
 
-/// Reads an entry of the source table from where it is.
-fn fetch<'b, R: EffectNumber>(
-    plan: &'b Plan,
+/// What effects may look at now.
+fn sight<'b, R: EffectNumber>(
+    plan: &Plan,
     at: &'b Instant<'b, R>,
-    coordinates: Option<&'b [R]>,
-    outputs: Option<&'b [R]>,
-) -> impl Fn(usize, usize) -> R + 'b {
+    coordinates: &'b [R],
+    outputs: &'b [R],
+) -> Sight<'b, R> {
     let n = plan.sizes;
-    let nothing = R::constant(f64::NAN);
-    move |pack, entry| match plan.sources.entries[entry].1 {
-        Origin::Own(i) => match plan.own_state[i] {
-            Some(state) => at.x[pack * n.x + state],
-            None => coordinates.map_or(nothing, |z| z[pack * n.z + i]),
-        },
-        Origin::Input(i) => at.u[pack * n.u + i],
-        Origin::Output(i) => outputs.map_or(nothing, |y| y[pack * n.y + i]),
-        Origin::Time => at.time,
-        Origin::State(i) => at.x[pack * n.x + i],
+    Sight {
+        x: at.x,
+        u: at.u,
+        coordinates,
+        outputs,
+        time: at.time,
+        sizes: [n.x, n.u, n.z, n.y],
     }
 }

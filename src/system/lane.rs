@@ -9,6 +9,8 @@ pub(crate) struct Drive {
     pub inputs: Vec<Vec<f64>>,
     /// Runs of samples that are simulated without a break.
     pub segments: Vec<Range<usize>>,
+    /// Sample at which time is 0, for each segment.
+    pub origins: Vec<usize>,
 }
 
 impl Drive {

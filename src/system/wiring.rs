@@ -34,17 +34,85 @@ macro_rules! effect_number {
 
 effect_number!(F64x8 => F64, F32x16 => F32, Dual64 => Dual64, Dual32 => Dual32);
 
+/// Where an entry of the source table is found.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Found {
+    State(usize),
+    Own(usize),
+    Input(usize),
+    Output(usize),
+    Time,
+}
+
+/// Everything that effects look at in one instant: this group's share.
+pub(crate) struct Sight<'b, R> {
+    pub x: &'b [R],
+    pub u: &'b [R],
+    pub coordinates: &'b [R],
+    pub outputs: &'b [R],
+    pub time: R,
+    /// Values per pack of the four above.
+    pub sizes: [usize; 4],
+}
+
+impl<R: LaneNumber> Sight<'_, R> {
+    /// The value at a place, for one pack.
+    #[inline(always)]
+    pub fn at(&self, pack: usize, found: Found) -> &R {
+        let [nx, nu, nz, ny] = self.sizes;
+        match found {
+            Found::State(i) => &self.x[pack * nx + i],
+            Found::Input(i) => &self.u[pack * nu + i],
+            Found::Own(i) => &self.coordinates[pack * nz + i],
+            Found::Output(i) => &self.outputs[pack * ny + i],
+            Found::Time => &self.time,
+        }
+    }
+}
+
+/// Where an entry of the source table is found in a plan: own coordinates that are states
+/// are read where they are.
+pub(crate) fn find(plan: &Plan, entry: usize) -> Found {
+    match plan.sources.entries[entry].1 {
+        Origin::Own(i) => plan.own_state[i].map_or(Found::Own(i), Found::State),
+        Origin::Input(i) => Found::Input(i),
+        Origin::Output(i) => Found::Output(i),
+        Origin::Time => Found::Time,
+        Origin::State(i) => Found::State(i),
+    }
+}
+
+/// One lane's own wiring, looked up.
+#[derive(Debug, Clone, Copy)]
+struct LaneRoute {
+    source: Found,
+    rate: (Found, f64),
+    target: usize,
+    /// Own channel or input that is entered, `None` for an output.
+    place: Option<(bool, usize)>,
+}
+
+/// Own channel (true) or input (false) of a target entry.
+fn place(plan: &Plan, entry: usize) -> Option<(bool, usize)> {
+    match plan.targets.entries[entry].1 {
+        Origin::Own(i) => Some((true, i)),
+        Origin::Input(i) => Some((false, i)),
+        _ => None,
+    }
+}
+
 /// One slot's wiring for a group of lanes.
 pub(crate) struct Wiring<R> {
     pub slot: usize,
     /// Whether it enters an output, or anything else (or has states to advance).
     pub to_output: bool,
     pub to_inside: bool,
-    sources: Vec<usize>,
-    rate: Option<(usize, f64)>,
-    targets: Vec<(usize, f64)>,
+    sources: Vec<Found>,
+    rate: Option<(Found, f64)>,
+    /// Entries of the target table with factors, and what they are.
+    targets: Vec<(usize, f64, Option<(bool, usize)>)>,
     /// Wiring of each lane where lanes differ.
-    routes: Option<Vec<Option<Route>>>,
+    routes: Option<Vec<Option<LaneRoute>>>,
     gains: Option<Vec<R>>,
     play: Option<PlayState<R>>,
     packs: usize,
@@ -72,7 +140,14 @@ impl<R: EffectNumber> Wiring<R> {
         let last = lanes.len().saturating_sub(1);
         let route = |l: usize| lanes.get(l.min(last))?.routes.get(number).copied().flatten();
         let routed = (0..lanes.len()).any(|l| route(l).is_some());
-        let routes = routed.then(|| (0..packs * R::LANES).map(route).collect::<Vec<_>>());
+        let look_up = |r: Route| LaneRoute {
+            source: find(plan, r.source),
+            rate: (find(plan, r.rate.0), r.rate.1),
+            target: r.target,
+            place: place(plan, r.target),
+        };
+        let routes = routed
+            .then(|| (0..packs * R::LANES).map(|l| route(l).map(look_up)).collect::<Vec<_>>());
         let mut enters: Vec<usize> = targets.iter().map(|(entry, _)| *entry).collect();
         enters.extend(routes.iter().flatten().flatten().map(|route| route.target));
         let into_output = |&e: &usize| matches!(plan.targets.entries[e].1, Origin::Output(_));
@@ -84,9 +159,9 @@ impl<R: EffectNumber> Wiring<R> {
             slot: number,
             to_output: enters.iter().any(into_output),
             to_inside: m > 0 || !enters.iter().all(into_output),
-            sources: sources.clone(),
-            rate: *rate,
-            targets: targets.clone(),
+            sources: sources.iter().map(|&entry| find(plan, entry)).collect(),
+            rate: rate.map(|(entry, factor)| (find(plan, entry), factor)),
+            targets: targets.iter().map(|&(e, factor)| (e, factor, place(plan, e))).collect(),
             routes,
             gains: gains.map(|gains| own(gains, plan.slots.len(), number, 1)),
             play: (slot.card.mechanism == Mechanism::Play).then(|| PlayState::new(packs)),
@@ -100,14 +175,21 @@ impl<R: EffectNumber> Wiring<R> {
         })
     }
 
-    /// All entries of the source table that it looks at.
-    pub fn looks_at(&self) -> Vec<usize> {
-        let mut entries = self.sources.clone();
-        entries.extend(self.rate.map(|(entry, _)| entry));
+    /// Everything that it looks at.
+    pub fn looks_at(&self) -> Vec<Found> {
+        let mut found = self.sources.clone();
+        found.extend(self.rate.map(|(place, _)| place));
         for route in self.routes.iter().flatten().flatten() {
-            entries.extend([route.source, route.rate.0]);
+            found.extend([route.source, route.rate.0]);
         }
-        entries
+        found
+    }
+
+    /// Whether it enters an input for any lane.
+    pub fn enters_inputs(&self) -> bool {
+        let is_input = |place: Option<(bool, usize)>| matches!(place, Some((false, _)));
+        self.targets.iter().any(|t| is_input(t.2))
+            || self.routes.iter().flatten().flatten().any(|r| is_input(r.place))
     }
 
     pub fn restart(&mut self) {
@@ -117,32 +199,39 @@ impl<R: EffectNumber> Wiring<R> {
     }
 
     /// w and the rates of the own states.
-    pub fn evaluate(&mut self, plan: &Plan, s: &[R], fetch: &impl Fn(usize, usize) -> R) {
+    pub fn evaluate(&mut self, plan: &Plan, s: &[R], sight: &Sight<'_, R>) {
         let slot = &plan.slots[self.slot];
         let (m, seen) = (slot.card.states, self.sources.len());
-        for pack in 0..self.packs {
-            match &self.routes {
-                None => {
-                    for (i, &source) in self.sources.iter().enumerate() {
-                        self.coordinates[pack * seen + i] = fetch(pack, source);
-                    }
-                    if let Some((entry, factor)) = self.rate {
-                        self.rate_in[pack] = fetch(pack, entry) * factor;
+        match &self.routes {
+            None => {
+                for (i, &source) in self.sources.iter().enumerate() {
+                    for pack in 0..self.packs {
+                        self.coordinates[pack * seen + i] = *sight.at(pack, source);
                     }
                 }
-                Some(routes) => {
-                    for lane in 0..R::LANES {
-                        let Some(route) = routes[pack * R::LANES + lane] else { continue };
-                        let z = fetch(pack, route.source).lane(lane);
-                        self.coordinates[pack * seen].set_lane(lane, z);
-                        if self.rate.is_some() {
-                            let rate = fetch(pack, route.rate.0).lane(lane) * route.rate.1;
-                            self.rate_in[pack].set_lane(lane, rate);
-                        }
+                if let Some((source, factor)) = self.rate {
+                    for pack in 0..self.packs {
+                        self.rate_in[pack] = *sight.at(pack, source) * factor;
                     }
                 }
             }
-            self.state[pack * m..][..m].copy_from_slice(&s[pack * plan.states + slot.states..][..m]);
+            Some(routes) => {
+                for (l, route) in routes.iter().enumerate() {
+                    let (pack, lane) = (l / R::LANES, l % R::LANES);
+                    let Some(route) = route else { continue };
+                    let z = sight.at(pack, route.source).lane(lane);
+                    self.coordinates[pack * seen].set_lane(lane, z);
+                    if self.rate.is_some() {
+                        let rate = sight.at(pack, route.rate.0).lane(lane) * route.rate.1;
+                        self.rate_in[pack].set_lane(lane, rate);
+                    }
+                }
+            }
+        }
+        for pack in 0..self.packs {
+            for i in 0..m {
+                self.state[pack * m + i] = s[pack * plan.states + slot.states + i];
+            }
         }
         if let Some(play) = &self.play {
             for pack in 0..self.packs {
@@ -172,41 +261,33 @@ impl<R: EffectNumber> Wiring<R> {
         let slot = &plan.slots[self.slot];
         let m = slot.card.states;
         for pack in 0..self.packs {
-            rates[pack * plan.states + slot.states..][..m]
-                .copy_from_slice(&self.state_rates[pack * m..][..m]);
+            for i in 0..m {
+                rates[pack * plan.states + slot.states + i] = self.state_rates[pack * m + i];
+            }
         }
     }
 
     /// Adds w to the own channels and inputs that it enters.
     pub fn scatter(&self, plan: &Plan, own: &mut [R], inputs: &mut [R]) {
         let (nw, nu) = (plan.sizes.w, plan.sizes.u);
-        let place = |pack: usize, entry: usize| match plan.targets.entries[entry].1 {
-            Origin::Own(i) => Some((true, pack * nw + i)),
-            Origin::Input(i) => Some((false, pack * nu + i)),
-            _ => None,
-        };
-        let mut add = |pack: usize, entry: usize, w: R| {
-            if let Some((is_own, at)) = place(pack, entry) {
-                let to = if is_own { &mut own[at] } else { &mut inputs[at] };
-                *to += w;
-            }
-        };
-        for pack in 0..self.packs {
-            match &self.routes {
-                None => {
-                    for &(entry, factor) in &self.targets {
-                        let w = if factor == 1.0 { self.w[pack] } else { self.w[pack] * factor };
-                        add(pack, entry, w);
+        match &self.routes {
+            None => {
+                for &(_, factor, place) in &self.targets {
+                    let Some((is_own, i)) = place else { continue };
+                    let (to, n) = if is_own { (&mut *own, nw) } else { (&mut *inputs, nu) };
+                    for pack in 0..self.packs {
+                        let w = self.w[pack];
+                        to[pack * n + i] += if factor == 1.0 { w } else { w * factor };
                     }
                 }
-                Some(routes) => {
-                    for lane in 0..R::LANES {
-                        if let Some(route) = routes[pack * R::LANES + lane] {
-                            let mut w = R::constant(0.0);
-                            w.set_lane(lane, self.w[pack].lane(lane));
-                            add(pack, route.target, w);
-                        }
-                    }
+            }
+            Some(routes) => {
+                for (l, route) in routes.iter().enumerate() {
+                    let (pack, lane) = (l / R::LANES, l % R::LANES);
+                    let Some((is_own, i)) = route.as_ref().and_then(|r| r.place) else { continue };
+                    let to = if is_own { &mut own[pack * nw + i] } else { &mut inputs[pack * nu + i] };
+                    let sum = to.lane(lane) + self.w[pack].lane(lane);
+                    to.set_lane(lane, sum);
                 }
             }
         }
@@ -216,7 +297,7 @@ impl<R: EffectNumber> Wiring<R> {
     pub fn entering(&self, target: usize, pack: usize, mut value: R) -> R {
         match &self.routes {
             None => {
-                for &(entry, factor) in &self.targets {
+                for &(entry, factor, _) in &self.targets {
                     if entry == target {
                         value += self.w[pack] * factor;
                     }

@@ -1,0 +1,291 @@
+//! What may explain a residual without being a finding: initial states, and parameters
+//! where they are free.
+
+use std::sync::Arc;
+
+use super::nominal::Nominal;
+use super::problem::{Grain, Job, Model, Part, Problem, Span};
+use super::statistics::dot;
+use crate::optimise::{Settings, Unknown};
+
+/// One number of a model that can be moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Key {
+    /// Initial state: segment, state.
+    Start(usize, usize),
+    /// Parameter.
+    Theta(usize),
+    /// Knob of an added cause.
+    Knob(usize, usize),
+}
+
+/// Priors of re-estimated parameters: this share of their value.
+const PRIOR: f64 = 0.15;
+/// Segments whose initial states are estimated at most.
+const SEGMENTS: usize = 24;
+
+/// The moving parts of models, with scales and priors.
+#[derive(Debug, Clone)]
+pub(crate) struct Nuisance {
+    /// Initial states and their scale.
+    pub spread: Vec<f64>,
+    /// Initial states expected.
+    pub initial: Vec<f64>,
+    /// Free parameters: index, nominal value; empty where parameters are trusted.
+    pub free: Vec<(usize, f64)>,
+    /// Free parameters whose prior has been released.
+    pub released: Vec<usize>,
+    pub segments: usize,
+}
+
+impl Nuisance {
+    /// Initial states only.
+    pub fn new(problem: &Problem<'_>, nominal: &Nominal) -> Self {
+        Self {
+            spread: nominal.state_spread.clone(),
+            initial: problem.base.signals.initial(),
+            free: vec![],
+            released: vec![],
+            segments: problem.drive.segments.len().min(SEGMENTS),
+        }
+    }
+
+    /// Initial states and all parameters that are not held.
+    pub fn with_parameters(mut self, problem: &Problem<'_>, fixed: &[String]) -> Self {
+        let signals = &problem.base.signals;
+        self.free = signals
+            .parameters
+            .iter()
+            .enumerate()
+            .filter(|(_, p)| !p.fixed && !fixed.contains(&p.name))
+            .map(|(i, p)| (i, p.value))
+            .collect();
+        self
+    }
+
+    /// Keys that move in a model: nuisance first, then the knobs of its causes.
+    pub fn keys(&self, model: &Model) -> Vec<Key> {
+        let mut keys = vec![];
+        for segment in 0..self.segments {
+            keys.extend((0..self.initial.len()).map(|i| Key::Start(segment, i)));
+        }
+        keys.extend(self.free.iter().map(|&(p, _)| Key::Theta(p)));
+        for (a, added) in model.added.iter().enumerate() {
+            let cause = &added.cause;
+            keys.extend(cause.linear.iter().chain(&cause.refine).map(|&i| Key::Knob(a, i)));
+        }
+        keys
+    }
+
+    /// What is known about a key's value in a model.
+    pub fn unknown(&self, problem: &Problem<'_>, model: &Model, key: Key) -> Unknown {
+        let value = get(model, key);
+        match key {
+            Key::Start(_, i) => {
+                let spread = self.spread[i];
+                Unknown::new(value, 0.05 * spread).expected(self.initial[i], spread)
+            }
+            Key::Theta(p) => {
+                let nominal = self.free.iter().find(|(q, _)| *q == p).map_or(value, |(_, v)| *v);
+                let parameter = &problem.base.signals.parameters[p];
+                let size = if nominal == 0.0 { 1.0 } else { nominal.abs() };
+                let floor = if nominal > 0.0 { parameter.min.max(0.05 * nominal) } else { parameter.min };
+                let unknown = Unknown::new(value, 0.1 * size).within(floor, parameter.max);
+                if self.released.contains(&p) {
+                    unknown
+                } else {
+                    unknown.expected(nominal, PRIOR * size)
+                }
+            }
+            Key::Knob(a, i) => {
+                let cause = &model.added[a].cause;
+                let (min, max) = cause.bounds(i);
+                let scale = if cause.linear.contains(&i) {
+                    let size: f64 = cause.linear.iter().map(|&j| model.added[a].knobs[j].powi(2)).sum();
+                    size.sqrt().max(cause.probe.abs())
+                } else {
+                    let range = if (max - min).is_finite() { 0.02 * (max - min) } else { 0.0 };
+                    value.abs().max(range)
+                };
+                Unknown::new(value, scale.max(1e-12)).within(min, max)
+            }
+        }
+    }
+
+    /// Normalised tangents of everything that moves in a model, orthogonal to each other,
+    /// over the part that is fitted.
+    pub fn basis(&self, problem: &Problem<'_>, model: &Model, y0: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let keys = self.keys(model);
+        let r0 = problem.residual(y0, Part::Fit);
+        let mut jobs: Vec<Job> = vec![];
+        for &key in &keys {
+            let mut moved = model.clone();
+            let unknown = self.unknown(problem, model, key);
+            let step = 2e-3 * unknown.scale;
+            let room = unknown.bounds.1 - unknown.start;
+            set(&mut moved, key, unknown.start + if room < step { -step } else { step });
+            jobs.extend(problem.job(&moved, Grain::Coarse));
+        }
+        let mut basis: Vec<Vec<f64>> = vec![];
+        for y in problem.run(&jobs, Span::Fit).into_iter().flatten() {
+            let r = problem.residual(&y, Part::Fit);
+            let column = r0.iter().zip(&r).map(|(a, b)| a - b).collect();
+            add_to_basis(&mut basis, column);
+        }
+        basis
+    }
+}
+
+/// Takes the part of `column` that is new into an orthonormal basis.
+pub(crate) fn add_to_basis(basis: &mut Vec<Vec<f64>>, mut column: Vec<f64>) {
+    let before = dot(&column, &column).sqrt();
+    if !(before > 0.0 && before.is_finite()) {
+        return;
+    }
+    for _ in 0..2 {
+        project(basis, &mut column);
+    }
+    let left = dot(&column, &column).sqrt();
+    if left > 1e-7 * before {
+        for v in &mut column {
+            *v /= left;
+        }
+        basis.push(column);
+    }
+}
+
+/// Takes out of `x` what the basis explains.
+pub(crate) fn project(basis: &[Vec<f64>], x: &mut [f64]) {
+    for column in basis {
+        let share = dot(column, x);
+        for (x, c) in x.iter_mut().zip(column) {
+            *x -= share * c;
+        }
+    }
+}
+
+/// The value of a key.
+pub(crate) fn get(model: &Model, key: Key) -> f64 {
+    match key {
+        Key::Start(segment, i) => model.starts[segment][i],
+        Key::Theta(p) => model.theta[p],
+        Key::Knob(a, i) => model.added[a].knobs[i],
+    }
+}
+
+/// Sets the value of a key.
+pub(crate) fn set(model: &mut Model, key: Key, value: f64) {
+    match key {
+        Key::Start(segment, i) => model.starts[segment][i] = value,
+        Key::Theta(p) => model.theta[p] = value,
+        Key::Knob(a, i) => model.added[a].knobs[i] = value,
+    }
+}
+
+/// How refits are run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Refit {
+    pub settings: Settings,
+    pub grain: Grain,
+    /// Fit to the whole record instead of the part that is fitted.
+    pub whole: bool,
+}
+
+impl Refit {
+    /// For choosing between candidates.
+    pub fn search() -> Self {
+        let settings = Settings { iterations: 12, tolerance: 1e-4, difference: 2e-3 };
+        Self { settings, grain: Grain::Coarse, whole: false }
+    }
+
+    /// For the final numbers.
+    pub fn last() -> Self {
+        let settings = Settings { iterations: 25, tolerance: 1e-7, difference: 1e-4 };
+        Self { settings, grain: Grain::Fine, whole: true }
+    }
+}
+
+/// A fitted model.
+#[derive(Debug, Clone)]
+pub(crate) struct Fitted {
+    pub model: Model,
+    /// Keys that moved, and the derivatives of the residuals by them.
+    pub keys: Vec<Key>,
+    pub columns: Vec<Vec<f64>>,
+    pub residuals: Vec<f64>,
+}
+
+/// Fits many models at once, each from where it stands; `None` where a model cannot even be
+/// simulated at its start.
+pub(crate) fn refit(
+    problem: &Problem<'_>,
+    nuisance: &Nuisance,
+    models: &[Model],
+    how: Refit,
+) -> Vec<Option<Fitted>> {
+    use crate::optimise::Levenberg;
+    let part = if how.whole { Part::All } else { Part::Fit };
+    let span = if how.whole { Span::Whole } else { Span::Fit };
+    let mut runs: Vec<(Vec<Key>, Levenberg)> = models
+        .iter()
+        .map(|model| {
+            let keys = nuisance.keys(model);
+            let unknowns = keys.iter().map(|&key| nuisance.unknown(problem, model, key));
+            (keys.clone(), Levenberg::new(unknowns.collect(), how.settings))
+        })
+        .collect();
+    let moved = |model: &Model, keys: &[Key], point: &[f64]| {
+        let mut model = model.clone();
+        for (&key, &value) in keys.iter().zip(point) {
+            set(&mut model, key, value);
+        }
+        for added in &mut model.added {
+            added.knobs = added.cause.clipped(&added.knobs, problem.step(how.grain));
+        }
+        model
+    };
+    loop {
+        let mut jobs = vec![];
+        let mut counts = vec![];
+        for ((keys, run), model) in runs.iter_mut().zip(models) {
+            let points = run.propose();
+            counts.push(points.len());
+            for point in points {
+                let Some(job) = problem.job(&moved(model, keys, &point), how.grain) else {
+                    // a model that cannot be built has no residuals anywhere
+                    counts.pop();
+                    counts.push(0);
+                    break;
+                };
+                jobs.push(job);
+            }
+        }
+        if jobs.is_empty() {
+            break;
+        }
+        let mut answers = problem.run(&jobs, span).into_iter();
+        for ((_, run), count) in runs.iter_mut().zip(counts) {
+            if count == 0 {
+                run.absorb(vec![None]);
+                continue;
+            }
+            let residual = |y: Option<Arc<Vec<Vec<f64>>>>| {
+                let r = problem.residual(&y?, part);
+                r.iter().all(|v| v.is_finite()).then_some(r)
+            };
+            let own: Vec<_> = answers.by_ref().take(count).map(residual).collect();
+            run.absorb(own);
+        }
+    }
+    runs.into_iter()
+        .zip(models)
+        .map(|((keys, run), model)| {
+            run.squares.is_finite().then(|| Fitted {
+                model: moved(model, &keys, &run.point),
+                keys,
+                columns: run.columns,
+                residuals: run.residuals,
+            })
+        })
+        .collect()
+}

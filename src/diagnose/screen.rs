@@ -1,0 +1,388 @@
+//! How much of the residual each candidate explains: probes, projection, score.
+
+use std::sync::Arc;
+
+use super::candidate::{Candidate, Wire};
+use super::nuisance::{Nuisance, add_to_basis, project};
+use super::problem::{Grain, Job, Model, Part, Problem, Span};
+use super::statistics::{deviation, dot, rms, wald};
+
+/// Simulations whose outputs are held at once.
+const CHUNK: usize = 512;
+/// Candidates that are probed at the residual's own size too.
+const SECANTS: usize = 48;
+/// Attempts to hit a target size.
+const ATTEMPTS: usize = 6;
+
+/// What the screen says of one candidate.
+#[derive(Debug, Clone)]
+pub(crate) struct Scored {
+    pub cause: Arc<Candidate>,
+    /// Sum of squares of the residual that it explains, to first order.
+    pub explained: f64,
+    /// Estimated coefficients, in the order of `linear` (one blend where there are none).
+    pub estimate: Vec<f64>,
+    /// Grid start that they belong to.
+    pub start: usize,
+    /// Score of the estimate.
+    pub score: f64,
+    /// Share of its effect that nothing else can imitate.
+    pub kappa: f64,
+    /// Effect of one unit of the first coefficient on the output, all samples together,
+    /// less what can be imitated.
+    pub unit_effect: f64,
+    /// Probe size at which the effect was near the residual's size.
+    pub probe: f64,
+}
+
+/// The screen of one model.
+pub(crate) struct Screen {
+    /// Best first.
+    pub scored: Vec<Scored>,
+    /// Sum of squares of the residual after projection.
+    pub total: f64,
+    /// Residual over spread of the output.
+    pub far: f64,
+    /// Root mean square of the residual, in units of the scales.
+    pub residual: f64,
+    /// Probe columns tried.
+    pub columns: usize,
+}
+
+/// A probe under way.
+#[derive(Debug, Clone)]
+struct Probe {
+    candidate: usize,
+    start: usize,
+    /// Position in `linear`.
+    which: usize,
+    size: f64,
+    done: bool,
+    failed: bool,
+}
+
+/// The simulation of a model with one more cause at given knobs, wired by the lane so that
+/// candidates of one kind share a plan.
+pub(crate) fn with_candidate(
+    problem: &Problem<'_>,
+    model: &Model,
+    cause: &Arc<Candidate>,
+    knobs: &[f64],
+    blend: f64,
+) -> Option<Job> {
+    let mut job = problem.job(&model.with(cause, knobs.to_vec()), Grain::Coarse)?;
+    if blend != 1.0 {
+        let slots = job.plan.slots.len();
+        let mut gains = vec![1.0; slots];
+        *gains.last_mut()? = blend;
+        job.lane.gains = gains;
+    }
+    Some(job)
+}
+
+/// Jobs of many candidates of the same effect share one plan, each lane with its own route.
+struct Sharing<'a, 'b> {
+    problem: &'a Problem<'b>,
+    model: &'a Model,
+    /// First candidate of each kind, whose plan the others use.
+    kinds: Vec<(String, Arc<Candidate>)>,
+}
+
+impl Sharing<'_, '_> {
+    fn job(&mut self, cause: &Arc<Candidate>, knobs: &[f64], blend: f64) -> Option<Job> {
+        let Wire::Stage(route) = cause.wire else {
+            return with_candidate(self.problem, self.model, cause, knobs, blend);
+        };
+        // same effect, same absent bounds, same need of a rate: the same compiled slot
+        let absent: String = knobs.iter().map(|v| if v.is_finite() { 'f' } else { 'i' }).collect();
+        let kind = format!("{}{absent}{}", cause.effect, route.rate.1 != 0.0);
+        let first = match self.kinds.iter().find(|(name, _)| *name == kind) {
+            Some((_, first)) => first.clone(),
+            None => {
+                self.kinds.push((kind, cause.clone()));
+                cause.clone()
+            }
+        };
+        let clipped = cause.clipped(knobs, self.problem.step(Grain::Coarse));
+        // the first one's sign rule must not clip this one's knobs
+        let mut job = with_candidate(self.problem, self.model, &first, &first.starts[0], blend)?;
+        let own = clipped.len();
+        let at = job.lane.knobs.len() - own;
+        job.lane.knobs[at..].copy_from_slice(&clipped);
+        let mut routes = vec![None; job.plan.slots.len()];
+        *routes.last_mut()? = Some(route);
+        job.lane.routes = routes;
+        Some(job)
+    }
+}
+
+/// Screens all candidates on top of a model.
+pub(crate) fn screen(
+    problem: &Problem<'_>,
+    nuisance: &Nuisance,
+    model: &Model,
+    candidates: &[Arc<Candidate>],
+) -> Option<Screen> {
+    let job = problem.job(model, Grain::Coarse)?;
+    let y0 = problem.run(&[job], Span::Fit).swap_remove(0)?;
+    let r = problem.residual(&y0, Part::Fit);
+    let basis = nuisance.basis(problem, model, &y0);
+    let mut left = r.clone();
+    project(&basis, &mut left);
+    let spread = {
+        let of = |o: usize| {
+            let y = problem.counted(o, &problem.y[o], Part::Fit);
+            (deviation(&y) / problem.scale[o]).powi(2)
+        };
+        let sum: f64 = (0..problem.y.len()).map(of).sum();
+        (sum / problem.y.len() as f64).sqrt()
+    };
+    let residual = rms(&r);
+    let gentle = (0.02 * spread).min(0.5 * residual);
+    let mut sharing = Sharing { problem, model, kinds: vec![] };
+    let at = Looking { problem, basis: &basis, r0: &r, left: &left };
+    let mut best: Vec<Option<Scored>> = vec![None; candidates.len()];
+    let mut per_start: Vec<Vec<(f64, usize, f64)>> = vec![vec![]; candidates.len()];
+    // gentle probes of every grid point: the tangent
+    let mut probes = vec![];
+    for (c, cause) in candidates.iter().enumerate() {
+        for start in 0..cause.starts.len() {
+            for which in 0..cause.linear.len().max(1) {
+                let sign = if cause.sign < 0.0 && which == 0 { -1.0 } else { 1.0 };
+                let size = cause.probe * sign;
+                probes.push(Probe { candidate: c, start, which, size, done: false, failed: false });
+            }
+        }
+    }
+    let columns = probes.len();
+    let hits = steer(problem, &mut sharing, candidates, &mut probes, &r, (1e-6, gentle), true);
+    let mut of_start: std::collections::BTreeMap<(usize, usize), Vec<(Vec<f64>, f64)>> = Default::default();
+    for (probe, column) in hits {
+        of_start.entry((probe.candidate, probe.start)).or_default().push((column, probe.size));
+    }
+    for ((c, start), columns) in of_start {
+        let cause = &candidates[c];
+        if columns.len() < cause.linear.len() {
+            continue;
+        }
+        let Some(scored) = at.score(cause, start, columns, None) else { continue };
+        per_start[c].push((scored.explained, start, scored.probe));
+        keep(&mut best[c], scored);
+    }
+    // probes as large as what is to be explained: the secant
+    if residual > 2.0 * gentle {
+        let mut probes = vec![];
+        // those that explain next to nothing to first order are not looked at again
+        let mut order: Vec<usize> = (0..candidates.len()).filter(|&c| best[c].is_some()).collect();
+        let explained = |c: usize| best[c].as_ref().map_or(0.0, |b| b.explained);
+        order.sort_by(|&a, &b| explained(b).total_cmp(&explained(a)));
+        order.truncate(SECANTS);
+        for c in order {
+            let cause = &candidates[c];
+            if cause.linear.len() > 1 {
+                continue;
+            }
+            per_start[c].sort_by(|a, b| b.0.total_cmp(&a.0));
+            for &(_, start, size) in per_start[c].iter().take(2) {
+                let signs: &[f64] = match cause.sign {
+                    _ if cause.blended() => &[1.0],
+                    s if s > 0.0 => &[1.0],
+                    s if s < 0.0 => &[-1.0],
+                    _ => &[1.0, -1.0],
+                };
+                for sign in signs {
+                    let size = size.abs() * sign;
+                    probes.push(Probe { candidate: c, start, which: 0, size, done: false, failed: false });
+                }
+            }
+        }
+        let target = 0.7 * residual;
+        for (probe, column) in steer(problem, &mut sharing, candidates, &mut probes, &r, (0.3, target), false) {
+            let cause = &candidates[probe.candidate];
+            let sign = probe.size.signum();
+            if let Some(scored) = at.score(cause, probe.start, vec![(column, probe.size)], Some(sign)) {
+                keep(&mut best[probe.candidate], scored);
+            }
+        }
+    }
+    let mut scored: Vec<Scored> = best.into_iter().flatten().collect();
+    scored.sort_by(|a, b| b.explained.total_cmp(&a.explained));
+    Some(Screen {
+        scored,
+        total: dot(&left, &left),
+        far: residual / spread.max(1e-300),
+        residual,
+        columns,
+    })
+}
+
+fn keep(best: &mut Option<Scored>, scored: Scored) {
+    if best.as_ref().is_none_or(|b| scored.explained > b.explained) {
+        *best = Some(scored);
+    }
+}
+
+/// Simulates probes until each has an effect between `share * target` and three times the
+/// target; gives back the effect per unit of those that have.
+fn steer(
+    problem: &Problem<'_>,
+    sharing: &mut Sharing<'_, '_>,
+    candidates: &[Arc<Candidate>],
+    probes: &mut [Probe],
+    r0: &[f64],
+    (share, target): (f64, f64),
+    tangent: bool,
+) -> Vec<(Probe, Vec<f64>)> {
+    let mut hits = vec![];
+    for attempt in 0..ATTEMPTS {
+        let open: Vec<usize> =
+            (0..probes.len()).filter(|&i| !probes[i].done && !probes[i].failed).collect();
+        for chunk in open.chunks(CHUNK) {
+            let mut jobs = vec![];
+            let mut of = vec![];
+            for &i in chunk {
+                let probe = &probes[i];
+                let cause = &candidates[probe.candidate];
+                let mut knobs = cause.starts[probe.start].clone();
+                let blend = match cause.linear.get(probe.which) {
+                    Some(&knob) => {
+                        knobs[knob] = probe.size;
+                        1.0
+                    }
+                    None => probe.size.abs().min(1.0),
+                };
+                match sharing.job(cause, &knobs, blend) {
+                    Some(job) => {
+                        jobs.push(job);
+                        of.push(i);
+                    }
+                    None => probes[i].failed = true,
+                }
+            }
+            for (i, y) in of.into_iter().zip(problem.run(&jobs, Span::Fit)) {
+                let probe = &mut probes[i];
+                let cause = &candidates[probe.candidate];
+                let Some(y) = y else {
+                    probe.size *= 0.1;
+                    continue;
+                };
+                let r = problem.residual(&y, Part::Fit);
+                let change: Vec<f64> = r0.iter().zip(&r).map(|(a, b)| a - b).collect();
+                let effect = rms(&change);
+                if !effect.is_finite() {
+                    probe.size *= 0.1;
+                    continue;
+                }
+                let limit = match cause.linear.get(probe.which) {
+                    Some(&knob) => {
+                        let (min, max) = cause.bounds(knob);
+                        if probe.size > 0.0 { max } else { min.abs() }
+                    }
+                    None => 1.0,
+                };
+                let last = attempt + 1 == ATTEMPTS || probe.size.abs() >= limit && effect < target;
+                if effect < 1e-12 * target || effect == 0.0 {
+                    if probe.size.abs() >= limit {
+                        probe.failed = true;
+                    }
+                    probe.size = (probe.size.abs() * 30.0).min(limit).copysign(probe.size);
+                    continue;
+                }
+                let hit = effect > share * target && effect < 3.0 * target;
+                if hit || last && effect < 30.0 * target {
+                    probe.done = true;
+                    let size = probe.size;
+                    let column = change.iter().map(|v| v / size).collect();
+                    let mut found = probe.clone();
+                    // what a secant should start from
+                    if tangent {
+                        found.size = size * target / effect;
+                    }
+                    hits.push((found, column));
+                    continue;
+                }
+                let factor = (target / effect).clamp(1e-3, 1e3);
+                probe.size = (probe.size.abs() * factor).min(limit).copysign(probe.size);
+            }
+        }
+    }
+    hits
+}
+
+/// What scores are made against.
+struct Looking<'a, 'b> {
+    problem: &'a Problem<'b>,
+    basis: &'a [Vec<f64>],
+    r0: &'a [f64],
+    left: &'a [f64],
+}
+
+impl Looking<'_, '_> {
+    /// Scores the columns of one grid start; `sign` is that of a secant probe, which only
+    /// counts for estimates of its own sign.
+    fn score(
+        &self,
+        cause: &Arc<Candidate>,
+        start: usize,
+        columns: Vec<(Vec<f64>, f64)>,
+        sign: Option<f64>,
+    ) -> Option<Scored> {
+        debug_assert_eq!(self.r0.len(), self.left.len());
+        let probe = columns.first()?.1;
+        let before: f64 = columns.iter().map(|(c, _)| dot(c, c)).sum();
+        let columns: Vec<Vec<f64>> = columns
+            .into_iter()
+            .map(|(mut column, _)| {
+                project(self.basis, &mut column);
+                column
+            })
+            .collect();
+        let after: f64 = columns.iter().map(|c| dot(c, c)).sum();
+        let kappa = (after / before).sqrt();
+        if !(after > 1e-6 * before) || !after.is_finite() {
+            return None;
+        }
+        let (estimate, fitted) = if columns.len() == 1 {
+            let c = dot(&columns[0], self.left) / after;
+            (vec![c], columns[0].iter().map(|s| c * s).collect::<Vec<f64>>())
+        } else {
+            let mut basis = vec![];
+            for column in &columns {
+                add_to_basis(&mut basis, column.clone());
+            }
+            let mut rest = self.left.to_vec();
+            project(&basis, &mut rest);
+            let fitted: Vec<f64> = self.left.iter().zip(&rest).map(|(a, b)| a - b).collect();
+            (solve(&columns, self.left)?, fitted)
+        };
+        let first = estimate[0];
+        if cause.sign * first < 0.0 || cause.blended() && first < 0.0 {
+            return None;
+        }
+        if sign.is_some_and(|sign| sign * first < 0.0) {
+            return None;
+        }
+        let explained = dot(&fitted, self.left);
+        let ff = self.problem.per_sample(&fitted, &fitted);
+        let fr = self.problem.per_sample(&fitted, self.left);
+        Some(Scored {
+            cause: cause.clone(),
+            explained,
+            estimate,
+            start,
+            score: wald(&ff, &fr),
+            kappa,
+            unit_effect: dot(&columns[0], &columns[0]).sqrt(),
+            probe,
+        })
+    }
+}
+
+/// Least squares with a few columns.
+fn solve(columns: &[Vec<f64>], y: &[f64]) -> Option<Vec<f64>> {
+    let n = columns.len();
+    let normal = nalgebra::DMatrix::from_fn(n, n, |i, j| dot(&columns[i], &columns[j]));
+    let right = nalgebra::DVector::from_fn(n, |i, _| dot(&columns[i], y));
+    let solution = normal.svd(true, true).solve(&right, 1e-9 * right.len() as f64).ok()?;
+    Some(solution.iter().copied().collect())
+}
