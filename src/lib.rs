@@ -2,11 +2,11 @@
 
 extern crate self as lacuna;
 
-pub mod fault;
 pub mod data;
 pub mod diagnose;
 pub mod effect;
 pub mod evaluate;
+pub mod fault;
 pub mod model;
 pub mod optimise;
 #[path = "../plugins/mod.rs"]

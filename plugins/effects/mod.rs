@@ -9,6 +9,7 @@ pub mod delay;
 pub mod drag;
 pub mod drift;
 pub mod extra_mode;
+pub mod free_form;
 pub mod gain;
 pub mod harmonic;
 pub mod hinge;

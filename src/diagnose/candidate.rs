@@ -40,6 +40,8 @@ pub(crate) struct Candidate {
     pub also_into: Vec<AlsoInto>,
     pub wire: Wire,
     pub preference: Preference,
+    /// The place alone, for ties.
+    pub place: Preference,
     /// Knobs that the effect is proportional to; empty where it is blended in instead.
     pub linear: Vec<usize>,
     /// Shape knobs that are refined.
@@ -85,8 +87,8 @@ impl Candidate {
     }
 
     /// How equal explanations are ordered: the least comes first.
-    pub fn order(&self) -> (Preference, usize, u8) {
-        (self.preference, self.unknowns(), self.card.rank)
+    pub fn order(&self) -> (Preference, usize, u8, Preference) {
+        (self.preference, self.unknowns(), self.card.rank, self.place)
     }
 
     /// Knobs within their ranges, the sign kept, and friction no steeper than `step` (s)

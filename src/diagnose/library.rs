@@ -146,7 +146,6 @@ impl Builder<'_, '_> {
             let scale = if value == 0.0 { 1.0 } else { value.abs() };
             let free = (f64::NEG_INFINITY, f64::INFINITY);
             let range = if changes { (floor - value, ceiling - value) } else { free };
-            let per_time = if changes { parameter.unit.clone() } else { parameter.unit.clone() };
             self.found.push(Candidate {
                 effect: name,
                 shape: shape.clone(),
@@ -155,6 +154,7 @@ impl Builder<'_, '_> {
                 of: (!changes).then(|| "time".into()),
                 also_into: vec![],
                 preference: if changes { Preference::Parameter } else { Preference::DeclaredChannel },
+                place: Preference::Parameter,
                 linear: vec![0],
                 refine: vec![],
                 starts: vec![vec![0.0]],
@@ -165,7 +165,7 @@ impl Builder<'_, '_> {
                 probe: if changes { 0.01 * scale } else { 0.02 * scale / duration },
                 stiffness: 0.0,
                 named: Named::default(),
-                units: (per_time, "s".into()),
+                units: (parameter.unit.clone(), "s".into()),
                 twins: vec![],
                 card,
             });
@@ -390,6 +390,7 @@ impl Builder<'_, '_> {
                     Wire::Stage(Route { source, rate: rate.unwrap_or((source, 0.0)), target: spot.target })
                 },
                 preference: if simple { Preference::Simple } else { preference },
+                place: preference,
                 linear,
                 refine,
                 starts,

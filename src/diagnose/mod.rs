@@ -1,16 +1,32 @@
 //! Finds what a simulation gets wrong, names it and measures the gain.
 
 mod candidate;
+mod curves;
 mod dependence;
+mod diagnosis;
+mod error;
+mod finding;
+mod floor;
 mod library;
 mod nominal;
 mod nuisance;
+mod precision;
 mod problem;
+mod records;
+mod score;
 mod screen;
 mod search;
 mod spectrum;
 mod spikes;
 mod stage;
 mod statistics;
+mod track;
+mod words;
 
+pub use diagnosis::Diagnosis;
+pub use error::DiagnoseError;
+pub use finding::{
+    Alternative, Cause, Curve, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack, Ranked,
+    Scores, Series, Track, Value, Verdict,
+};
 pub use search::Watch;

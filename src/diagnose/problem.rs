@@ -216,6 +216,14 @@ impl<'a> Problem<'a> {
         Some(plan)
     }
 
+    /// A plan of its own for effects whose shape is part of them (a free curve's knots).
+    pub fn plan_anew(&self, grain: Grain, placed: &[Placed]) -> Option<Arc<Plan>> {
+        let base = if grain == Grain::Fine { &self.base } else { &self.coarse };
+        let mut all = self.system.effects.clone();
+        all.extend_from_slice(placed);
+        Plan::new(base.clone(), &all).ok().map(Arc::new)
+    }
+
     /// The simulation of a model.
     pub fn job(&self, model: &Model, grain: Grain) -> Option<Job> {
         let step = self.step(grain);

@@ -350,6 +350,21 @@ impl<'a, 'b> Search<'a, 'b> {
         Some((new_first, pool))
     }
 
+    /// Takes out every cause that is no longer needed, also a single one.
+    pub fn prune_all(&mut self, model: &mut Model, slots: &mut Vec<Slot>) {
+        self.prune(model, slots, 0);
+        if model.added.len() == 1 {
+            let without = self.fitted(model.without(0));
+            if let (Some(now), Some(y)) = (self.present(model), self.present(&without))
+                && self.score(&y, &now) < AS_GOOD
+                && !self.accepts(&y, &now, false)
+            {
+                *model = without;
+                slots.clear();
+            }
+        }
+    }
+
     /// Takes out every cause (but the last `spare`) that is no longer needed.
     fn prune(&mut self, model: &mut Model, slots: &mut Vec<Slot>, spare: usize) {
         loop {

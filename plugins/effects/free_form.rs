@@ -1,0 +1,42 @@
+//! A curve whose shape is not known: straight lines between knots.
+
+use lacuna::prelude::*;
+
+/// w runs along straight lines between (knot, value) pairs and stays level outside.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FreeForm {
+    /// Coordinates of the knots, increasing, unit of the coordinate.
+    pub knots: Vec<f64>,
+    /// Values at the knots, unit of the channel.
+    pub values: Vec<f64>,
+}
+
+impl Effect for FreeForm {
+    fn card(&self) -> EffectCard {
+        let knob = |(i, value): (usize, &f64)| {
+            Knob::coefficient(format!("values.{i}"), *value, UnitRule::Channel)
+        };
+        let mut card = EffectCard::law(self.values.iter().enumerate().map(knob).collect());
+        card.places = Places::default();
+        card.rank(9)
+    }
+
+    fn title(&self, _: &Named) -> String {
+        "A law of unknown shape".into()
+    }
+
+    #[inline(always)]
+    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
+        let (zero, one) = (R::constant(0.0), R::constant(1.0));
+        let Some(&first) = at.knobs.first() else { return zero };
+        let mut w = first;
+        for (pair, ends) in at.knobs.windows(2).zip(self.knots.windows(2)) {
+            let way = ((at.z() - ends[0]) / (ends[1] - ends[0])).max(zero).min(one);
+            w += (pair[1] - pair[0]) * way;
+        }
+        w
+    }
+}
+
+lacuna::register!(CandidateEffect for FreeForm, "free_form", "a curve of unknown shape, straight between knots");

@@ -1,0 +1,68 @@
+//! Records joined into one drive, each starting afresh.
+
+use std::ops::Range;
+
+use super::error::DiagnoseError;
+use crate::data::Record;
+use crate::evaluate::{drive, measured};
+use crate::model::Signals;
+use crate::system::Drive;
+
+/// Several records, one after the other.
+pub(crate) struct Joined {
+    pub drive: Drive,
+    /// Measured outputs, not a number where there is none.
+    pub measured: Vec<Vec<f64>>,
+    /// Samples of each record.
+    pub spans: Vec<Range<usize>>,
+    pub sampling_time: f64,
+}
+
+/// Joins records of one machine.
+pub(crate) fn join(signals: &Signals, records: &[Record]) -> Result<Joined, DiagnoseError> {
+    let first = records.first().ok_or(DiagnoseError::NoRecord)?;
+    let mut joined = Joined {
+        drive: Drive {
+            inputs: vec![vec![]; signals.inputs.len()],
+            segments: vec![],
+            origins: vec![],
+        },
+        measured: vec![vec![]; signals.outputs.len()],
+        spans: vec![],
+        sampling_time: first.sampling_time,
+    };
+    for record in records {
+        if (record.sampling_time - first.sampling_time).abs() > 0.01 * first.sampling_time {
+            return Err(DiagnoseError::Steps {
+                record: record.source.clone(),
+                step: record.sampling_time,
+                first: first.sampling_time,
+            });
+        }
+        let offset = joined.spans.last().map_or(0, |s| s.end);
+        let own = drive(signals, record)?;
+        let outputs = measured(signals, record);
+        if outputs.iter().all(Option::is_none) {
+            let names: Vec<String> = signals.outputs.iter().map(|o| o.name.clone()).collect();
+            return Err(DiagnoseError::NothingMeasured {
+                record: record.source.clone(),
+                outputs: names.join(", "),
+            });
+        }
+        for (all, own) in joined.drive.inputs.iter_mut().zip(&own.inputs) {
+            all.extend(own);
+        }
+        for (all, own) in joined.measured.iter_mut().zip(outputs) {
+            match own {
+                Some(values) => all.extend(values),
+                None => all.extend(std::iter::repeat_n(f64::NAN, record.len())),
+            }
+        }
+        for segment in &own.segments {
+            joined.drive.segments.push(segment.start + offset..segment.end + offset);
+            joined.drive.origins.push(offset);
+        }
+        joined.spans.push(offset..offset + record.len());
+    }
+    Ok(joined)
+}

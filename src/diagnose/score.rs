@@ -1,0 +1,159 @@
+//! The gain, on data that were used for nothing else.
+
+use std::collections::BTreeMap;
+
+use super::finding::Gain;
+use super::floor::{Floor, predicted, repeated};
+use super::statistics::{block_sums, blocks, spread};
+use crate::data::Record;
+use crate::evaluate::{EvaluateError, Init, Metrics, Run};
+use crate::system::System;
+
+/// Data that nothing was fitted to or chosen on.
+pub(crate) struct TestData {
+    pub records: Vec<Record>,
+    /// First sample that counts in each record; before it the data were used. `None`: a
+    /// record of its own, whose start is found from its first samples.
+    pub from: Option<Vec<usize>>,
+    pub init: Init,
+}
+
+/// A model's errors on the test data.
+pub(crate) struct Scored {
+    /// Error series per output, all records one after the other.
+    pub errors: Vec<Vec<f64>>,
+    pub metrics: BTreeMap<String, Metrics>,
+}
+
+impl TestData {
+    /// Runs a system along the test data.
+    pub fn score(&self, system: &System) -> Result<Scored, EvaluateError> {
+        let signals = system.signals();
+        let mut errors = vec![vec![]; signals.outputs.len()];
+        let mut pairs: Vec<(Vec<f64>, Vec<f64>)> = vec![(vec![], vec![]); signals.outputs.len()];
+        for (r, record) in self.records.iter().enumerate() {
+            let run = Run::new(system, record)?;
+            let count = run.init_samples(self.init);
+            // the part before the test data may find the start, all of it
+            let from = self.from.as_ref().map_or(count, |from| from[r]);
+            let track = run.track(run.starts(if self.from.is_some() { from } else { count }));
+            for (o, measured) in run.measured.iter().enumerate() {
+                let Some(measured) = measured else { continue };
+                for k in from..measured.len() {
+                    errors[o].push(measured[k] - track.y[o][k]);
+                    pairs[o].0.push(measured[k]);
+                    pairs[o].1.push(track.y[o][k]);
+                }
+            }
+        }
+        let metrics = signals
+            .outputs
+            .iter()
+            .zip(&pairs)
+            .filter_map(|(s, (y, yhat))| Metrics::of(y, yhat).map(|m| (s.name.clone(), m)))
+            .collect();
+        Ok(Scored { errors, metrics })
+    }
+
+    /// Noise of every output, from these records and the baseline's errors on them.
+    pub fn floors(&self, system: &System, before: &Scored) -> Vec<Option<Floor>> {
+        let signals = system.signals();
+        (0..signals.outputs.len())
+            .map(|o| {
+                let whole = self.records.first().filter(|_| self.from.is_none());
+                let periods = whole.and_then(Record::periods);
+                if let (Some(record), Some(periods)) = (whole, periods)
+                    && let Some(y) = record.outputs.get(o)
+                    && let Some(floor) = repeated(&y.values, periods.samples, periods.samples / 10)
+                {
+                    return Some(floor);
+                }
+                let inputs: Vec<Vec<f64>> = (0..signals.inputs.len()).map(|i| self.input(i)).collect();
+                let lent: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+                // inputs and errors end together
+                let n = before.errors[o].len();
+                let lent: Vec<&[f64]> =
+                    lent.into_iter().map(|u| &u[u.len().saturating_sub(n)..]).collect();
+                predicted(&before.errors[o], &lent)
+            })
+            .collect()
+    }
+
+    fn input(&self, i: usize) -> Vec<f64> {
+        self.records.iter().filter_map(|r| r.inputs.get(i)).flat_map(|s| s.values.clone()).collect()
+    }
+}
+
+/// Mean squares in units of the baseline's own error, averaged over outputs: before, after,
+/// and their floor.
+fn mean_square(errors: &[f64]) -> f64 {
+    let known: Vec<f64> = errors.iter().copied().filter(|e| e.is_finite()).collect();
+    if known.len() < errors.len() && known.is_empty() {
+        return f64::INFINITY;
+    }
+    known.iter().map(|e| e * e).sum::<f64>() / known.len().max(1) as f64
+}
+
+/// Share of the mean square above the floor that is removed from `before` to `after`,
+/// outputs weighed by what the baseline leaves of them.
+pub(crate) fn removed(
+    before: &Scored,
+    from: &Scored,
+    after: &Scored,
+    floors: &[Option<Floor>],
+) -> f64 {
+    let (mut top, mut bottom) = (0.0, 0.0);
+    for o in 0..before.errors.len() {
+        if before.errors[o].is_empty() {
+            continue;
+        }
+        let unit = mean_square(&before.errors[o]);
+        if !(unit > 0.0 && unit.is_finite()) {
+            continue;
+        }
+        let floor = floors[o].map_or(0.0, |f| f.std * f.std).min(unit);
+        top += (mean_square(&from.errors[o]) - mean_square(&after.errors[o])) / unit;
+        bottom += (unit - floor) / unit;
+    }
+    if bottom > 1e-12 { (top / bottom).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// The gain with its interval.
+pub(crate) fn gain(before: &Scored, after: &Scored, floors: &[Option<Floor>]) -> Gain {
+    let outputs: Vec<usize> =
+        (0..before.errors.len()).filter(|&o| !before.errors[o].is_empty()).collect();
+    let ratio = |o: usize| mean_square(&after.errors[o]) / mean_square(&before.errors[o]);
+    let ratios: Vec<f64> = outputs.iter().map(|&o| ratio(o)).filter(|r| r.is_finite()).collect();
+    let test_rmse_ratio = (ratios.iter().sum::<f64>() / ratios.len().max(1) as f64).sqrt();
+    let error_removed = removed(before, before, after, floors);
+    // block by block: how much the numerator of that share scatters
+    let mut scatter = 0.0;
+    let mut bottom = 0.0;
+    for &o in &outputs {
+        let unit = mean_square(&before.errors[o]);
+        let floor = floors[o].map_or(0.0, |f| f.std * f.std).min(unit);
+        let kept: Vec<(f64, f64)> = before.errors[o]
+            .iter()
+            .zip(&after.errors[o])
+            .filter(|(b, a)| b.is_finite() && a.is_finite())
+            .map(|(b, a)| (*b, *a))
+            .collect();
+        let share = error_removed;
+        // the ratio's linearised contribution of every sample
+        let q: Vec<f64> = kept
+            .iter()
+            .map(|(b, a)| (b * b - a * a - share * (b * b - floor)) / unit)
+            .collect();
+        let count = blocks(&q);
+        let sums = block_sums(&q, count);
+        scatter += (spread(&sums) * (sums.len() as f64).sqrt() / q.len().max(1) as f64).powi(2);
+        bottom += (unit - floor) / unit;
+    }
+    let error = if bottom > 1e-12 { scatter.sqrt() / bottom } else { 0.0 };
+    let (low, high) = (error_removed - 2.0 * error, error_removed + 2.0 * error);
+    Gain {
+        test_rmse_ratio: if test_rmse_ratio.is_finite() { test_rmse_ratio } else { 1.0 },
+        error_removed,
+        interval95: [low.clamp(0.0, 1.0), high.clamp(0.0, 1.0)],
+    }
+}

@@ -1,0 +1,146 @@
+//! The search on both tracks: parameters trusted, parameters free; and which to believe.
+
+use std::sync::Arc;
+
+use super::dependence::dependence;
+use super::library::Allowed;
+use super::nominal::Nominal;
+use super::nuisance::{Fitted, Key, Nuisance, Refit, refit};
+use super::precision::{covariance, standard_error};
+use super::problem::{Grain, Model, Part, Problem};
+use super::search::{Found, Search, Slot, Watch};
+use super::candidate::Wire;
+use super::finding::{Moved, Track};
+
+/// Standard errors beyond which a parameter counts as moved.
+const MOVED: f64 = 3.0;
+/// Score at which one track wins whatever it needs.
+const WINS: f64 = 4.0;
+/// Causes from which on the free track is searched from its own beginning.
+const MANY: usize = 3;
+
+/// One track, finished.
+pub(crate) struct Finished {
+    pub track: Track,
+    pub found: Found,
+    /// The final fit on all data, with fine steps.
+    pub fitted: Fitted,
+    pub nuisance: Nuisance,
+    pub covariance: Option<nalgebra::DMatrix<f64>>,
+    pub moved: Vec<Moved>,
+    /// Outputs of the final fit over all data.
+    pub y: Arc<Vec<Vec<f64>>>,
+    /// Score that what is left depends on the inputs.
+    pub dependence: f64,
+}
+
+impl Finished {
+    /// How much it takes: causes plus parameters moved.
+    fn price(&self) -> usize {
+        self.fitted.model.added.len() + self.moved.len()
+    }
+}
+
+/// What both tracks share.
+pub(crate) struct Tracks<'a, 'b> {
+    pub problem: &'a mut Problem<'b>,
+    pub nominal: &'a Nominal,
+    pub allowed: &'a Allowed,
+    pub most: usize,
+    pub watch: &'a dyn Watch,
+}
+
+impl Tracks<'_, '_> {
+    /// Searches both tracks from a model; the chosen one comes first.
+    pub fn run(mut self, start: &Model) -> Option<(Finished, Option<Finished>)> {
+        let trusted = Nuisance::new(self.problem, self.nominal);
+        let found = self.search(trusted.clone(), start, (0.0, 0.6))?;
+        let settled = found.slots.len() < MANY && !found.full;
+        let trusted = self.finish(Track::ParametersTrusted, found, trusted)?;
+        if self.watch.stopped() {
+            return Some((trusted, None));
+        }
+        let free = Nuisance::new(self.problem, self.nominal)
+            .with_parameters(self.problem, &self.allowed.fixed);
+        if free.free.is_empty() {
+            return Some((trusted, None));
+        }
+        let clean = settled && trusted.dependence < 3.0;
+        let found = if clean {
+            self.carried_over(&free, start, &trusted)
+        } else {
+            self.search(free.clone(), start, (0.6, 0.95))
+        };
+        let Some(free) = found.and_then(|found| self.finish(Track::ParametersFree, found, free))
+        else {
+            return Some((trusted, None));
+        };
+        let better = self.problem.better(&trusted.y, &free.y, Part::Choose);
+        let take_free = match better {
+            b if b > WINS => true,
+            b if b < -WINS => false,
+            _ => free.price() < trusted.price(),
+        };
+        Some(if take_free { (free, Some(trusted)) } else { (trusted, Some(free)) })
+    }
+
+    fn search(&mut self, nuisance: Nuisance, start: &Model, share: (f64, f64)) -> Option<Found> {
+        let (allowed, most, watch) = (self.allowed, self.most, self.watch);
+        let mut search =
+            Search::new(self.problem, self.nominal, nuisance, allowed, most, watch);
+        search.share = share;
+        search.run(start.clone())
+    }
+
+    /// The trusted track's causes with parameters free, less those that are not needed any
+    /// more: cheap, where the trusted track left nothing.
+    fn carried_over(&mut self, free: &Nuisance, start: &Model, trusted: &Finished) -> Option<Found> {
+        self.watch.tell(0.9, "letting parameters move");
+        let mut model = start.clone();
+        model.added = trusted.fitted.model.added.clone();
+        let mut slots: Vec<Slot> = trusted.found.slots.clone();
+        for i in (0..model.added.len()).rev() {
+            if matches!(model.added[i].cause.wire, Wire::Parameter(_)) {
+                model.added.remove(i);
+                slots.remove(i);
+            }
+        }
+        let (allowed, most, watch) = (self.allowed, self.most, self.watch);
+        let mut search =
+            Search::new(self.problem, self.nominal, free.clone(), allowed, most, watch);
+        model = search.fitted(model);
+        search.prune_all(&mut model, &mut slots);
+        let spikes = self.problem.spikes();
+        Some(Found {
+            model,
+            slots,
+            first: None,
+            last: None,
+            dependence: trusted.found.dependence,
+            stopped: false,
+            spikes,
+            full: false,
+        })
+    }
+
+    /// The final fit on all data.
+    fn finish(&mut self, track: Track, found: Found, nuisance: Nuisance) -> Option<Finished> {
+        let fitted = refit(self.problem, &nuisance, std::slice::from_ref(&found.model), Refit::last())
+            .swap_remove(0)?;
+        let y = self.problem.simulate(&fitted.model, Grain::Fine)?;
+        let covariance = covariance(self.problem, &nuisance, &fitted);
+        let moved = nuisance
+            .free
+            .iter()
+            .filter_map(|&(p, from)| {
+                let to = fitted.model.theta[p];
+                let error = standard_error(&fitted, covariance.as_ref(), Key::Theta(p));
+                let far = error.is_some_and(|e| (to - from).abs() > MOVED * e);
+                let name = self.problem.base.signals.parameters[p].name.clone();
+                far.then_some(Moved { name, from, to, std_error: error })
+            })
+            .collect();
+        let dependence = dependence(self.problem, self.nominal, &y);
+        Some(Finished { track, found, fitted, nuisance, covariance, moved, y, dependence })
+    }
+}
