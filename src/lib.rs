@@ -5,6 +5,7 @@ extern crate self as lacuna;
 pub mod data;
 pub mod diagnose;
 pub mod effect;
+pub mod estimate;
 pub mod evaluate;
 pub mod fault;
 pub mod model;
@@ -13,6 +14,7 @@ pub mod optimise;
 pub mod plugins;
 pub mod real;
 pub mod register;
+mod statistics;
 pub mod system;
 
 #[doc(hidden)]

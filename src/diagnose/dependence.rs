@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::nominal::Nominal;
 use super::problem::Problem;
-use super::statistics::{deviation, mean, mixture};
+use crate::statistics::{deviation, mean, mixture};
 
 /// Samples that a dependence may reach back.
 const REACH: usize = 300;

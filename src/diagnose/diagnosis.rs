@@ -19,7 +19,7 @@ use super::problem::{Grain, Model, Part, Problem};
 use super::records::{Joined, join};
 use super::score::{Scored, TestData, gain, removed};
 use super::search::Watch;
-use super::statistics::{normal_tail, rms, whiteness};
+use crate::statistics::{normal_tail, rms, whiteness};
 use super::track::{Finished, Tracks};
 use super::words::sentence;
 use crate::data::Record;

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::statistics::deviation;
+use crate::statistics::deviation;
 
 /// Past values of the residual that predict the next one.
 const PAST: usize = 16;

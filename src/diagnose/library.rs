@@ -433,7 +433,7 @@ impl Builder<'_, '_> {
         }
         let mut knobs = start.to_vec();
         knobs[first] = 1.0;
-        let size = super::statistics::rms(&curve(shape.as_ref(), &knobs, self.nominal.series(source)));
+        let size = crate::statistics::rms(&curve(shape.as_ref(), &knobs, self.nominal.series(source)));
         if size > 0.0 && size.is_finite() { size } else { fallback }
     }
 }

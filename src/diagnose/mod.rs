@@ -16,10 +16,10 @@ mod records;
 mod score;
 mod screen;
 mod search;
-mod spectrum;
+
 mod spikes;
 mod stage;
-mod statistics;
+
 mod track;
 mod words;
 

@@ -1,7 +1,7 @@
 //! The baseline along the record: what every coordinate does, which way channels push.
 
 use super::problem::{Grain, Model, Part, Problem};
-use super::statistics::{deviation, median, rms};
+use crate::statistics::{deviation, median, rms};
 use crate::effect::View;
 use crate::model::probe::{Along, Point, slope};
 use crate::model::{Ask, Sizes};
@@ -186,7 +186,7 @@ fn gradient(x: &[f64], dt: f64) -> Vec<f64> {
 
 /// Seven angular frequencies around the band in which a signal has its power.
 fn frequencies(y: &[f64], dt: f64) -> Vec<f64> {
-    let power = super::spectrum::power(y);
+    let power = crate::statistics::power(y);
     let n = y.len() as f64;
     let total: f64 = power.iter().sum();
     let line = 2.0 * std::f64::consts::PI / (n * dt);

@@ -1,20 +1,18 @@
 //! How precisely what was fitted is known.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::nuisance::{Fitted, Key, Nuisance};
 use super::problem::Problem;
-use super::statistics::{block_sums, blocks, dot};
+use crate::statistics::{self, dot};
 
-/// Covariance of everything that moved, robust to correlated residuals: the curvature of the
-/// cost on both sides of the variance of its gradient, added up block by block.
+/// Covariance of everything that moved.
 pub(crate) fn covariance(
     problem: &Problem<'_>,
     nuisance: &Nuisance,
     fitted: &Fitted,
 ) -> Option<DMatrix<f64>> {
-    let n = fitted.keys.len();
-    if fitted.columns.len() != n || n == 0 {
+    if fitted.columns.len() != fitted.keys.len() {
         return None;
     }
     let unknowns: Vec<_> =
@@ -26,39 +24,14 @@ pub(crate) fn covariance(
         .map(|(column, u)| column.iter().map(|v| v * u.scale).collect())
         .collect();
     let variance = dot(&fitted.residuals, &fitted.residuals) / fitted.residuals.len().max(1) as f64;
-    let mut curvature = DMatrix::from_fn(n, n, |i, j| dot(&scaled[i], &scaled[j]));
-    for (i, u) in unknowns.iter().enumerate() {
-        if let Some((_, deviation)) = u.prior {
-            curvature[(i, i)] += variance * (u.scale / deviation).powi(2);
-        }
-        curvature[(i, i)] *= 1.0 + 1e-12;
-        curvature[(i, i)] += f64::MIN_POSITIVE;
-    }
-    let inverse = curvature.cholesky()?.inverse();
-    // gradient contributions, block by block; blocks as long as the residual remembers
-    let gradients: Vec<Vec<f64>> =
-        scaled.iter().map(|column| problem.per_sample(column, &fitted.residuals)).collect();
-    let count = gradients.iter().map(|q| blocks(q)).min()?;
-    let sums: Vec<Vec<f64>> = gradients.iter().map(|q| block_sums(q, count)).collect();
-    let mut middle = DMatrix::zeros(n, n);
-    for b in 0..sums[0].len() {
-        let g = DVector::from_fn(n, |i, _| sums[i][b]);
-        middle += &g * g.transpose();
-    }
-    // white residuals give this much whatever the blocks: few blocks must not promise more
-    let used = sums[0].len() as f64;
-    middle *= used / (used - 1.0).max(1.0);
-    let robust = &inverse * middle * &inverse;
-    let plain = &inverse * variance;
-    let mut covariance = DMatrix::zeros(n, n);
-    for i in 0..n {
-        for j in 0..n {
-            let factor = |k: usize| (robust[(k, k)].max(plain[(k, k)]) / robust[(k, k)].max(1e-300)).sqrt();
-            covariance[(i, j)] =
-                robust[(i, j)] * factor(i) * factor(j) * unknowns[i].scale * unknowns[j].scale;
-        }
-    }
-    Some(covariance)
+    let ridge = |u: &crate::optimise::Unknown| {
+        u.prior.map_or(0.0, |(_, deviation)| variance * (u.scale / deviation).powi(2))
+    };
+    let ridges: Vec<f64> = unknowns.iter().map(ridge).collect();
+    let relative =
+        statistics::covariance(&scaled, &fitted.residuals, problem.y.len(), &ridges)?;
+    let n = unknowns.len();
+    Some(DMatrix::from_fn(n, n, |i, j| relative[(i, j)] * unknowns[i].scale * unknowns[j].scale))
 }
 
 /// Standard error of one key.

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex};
 use rayon::prelude::*;
 
 use super::candidate::{Candidate, Wire};
-use super::statistics::{deviation, mixture, rms};
+use crate::statistics::{deviation, mixture, rms};
 use crate::system::{Base, Drive, Lane, Placed, Plan, System, SystemError};
 
 /// Lanes that are simulated side by side in one piece of work.

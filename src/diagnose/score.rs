@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::finding::Gain;
 use super::floor::{Floor, predicted, repeated};
-use super::statistics::{block_sums, blocks, spread};
+use crate::statistics::{block_sums, blocks, spread};
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Metrics, Run};
 use crate::system::System;

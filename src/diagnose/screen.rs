@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use super::candidate::{Candidate, Wire};
-use super::nuisance::{Nuisance, add_to_basis, project};
+use super::nuisance::Nuisance;
 use super::problem::{Grain, Job, Model, Part, Problem, Span};
-use super::statistics::{deviation, dot, rms, wald};
+use crate::statistics::{add_to_basis, deviation, dot, project, rms, wald};
 
 /// Simulations whose outputs are held at once.
 const CHUNK: usize = 512;

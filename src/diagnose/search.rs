@@ -9,9 +9,9 @@ use super::nominal::Nominal;
 use super::nuisance::{Nuisance, Refit, refit};
 use super::problem::{Grain, Model, Part, Problem};
 use super::screen::Screen;
-use super::spectrum::strongest;
+use crate::statistics::strongest;
 use super::stage::{REFITTED, Trial, stage, trial};
-use super::statistics::whiteness;
+use crate::statistics::whiteness;
 
 /// Score at which a model beats another for good, and below which both are as good.
 const ACCEPT: f64 = 4.0;

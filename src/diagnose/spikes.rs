@@ -1,7 +1,7 @@
 //! Single samples that stand alone: outliers of the instrument, not of the machine.
 
 use super::problem::Problem;
-use super::statistics::median;
+use crate::statistics::median;
 
 /// Deviations beyond this many robust standard deviations are spikes.
 const BEYOND: f64 = 6.0;
@@ -46,7 +46,7 @@ pub(crate) fn spikes(r: &[f64], known: &[bool]) -> Vec<bool> {
                 .filter(|&j| j < r.len() && known[j])
                 .map(|j| r[j])
                 .collect();
-            let around = super::statistics::mean(&neighbours);
+            let around = crate::statistics::mean(&neighbours);
             if neighbours.is_empty() { far[k] } else { (r[k] - around).abs() }
         })
         .collect();

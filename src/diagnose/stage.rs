@@ -7,7 +7,7 @@ use super::candidate::{Candidate, Wire};
 use super::nuisance::{Nuisance, Refit, refit};
 use super::problem::{Grain, Job, Model, Part, Problem, Simulated, Span};
 use super::screen::{Scored, Screen, screen, with_candidate};
-use super::statistics::{corrected_score, dot};
+use crate::statistics::{corrected_score, dot};
 
 /// Candidates that are refitted at most.
 pub(crate) const REFITTED: usize = 8;

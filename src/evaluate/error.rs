@@ -51,6 +51,12 @@ pub enum EvaluateError {
         /// Its time in s.
         time: f64,
     },
+    /// The estimated values cannot be written into the model.
+    #[error("the model does not take its estimated values: {reason}")]
+    NotWritten {
+        /// What the model said.
+        reason: String,
+    },
     /// There is nothing to estimate.
     #[error("the model has no free parameter to estimate")]
     NothingFree,
@@ -60,7 +66,7 @@ impl Explain for EvaluateError {
     fn kind(&self) -> Kind {
         match self {
             Self::System(error) => error.kind(),
-            Self::Diverges { .. } => Kind::Work,
+            Self::Diverges { .. } | Self::NotWritten { .. } => Kind::Work,
             _ => Kind::Input,
         }
     }
@@ -74,7 +80,7 @@ impl Explain for EvaluateError {
             Self::TooShort { record, .. } | Self::Step { record, .. } | Self::Diverges { record, .. } => {
                 Place { file: Some(record.clone()), ..Place::default() }
             }
-            Self::NothingFree => Place::default(),
+            Self::NothingFree | Self::NotWritten { .. } => Place::default(),
         }
     }
 
@@ -94,6 +100,9 @@ impl Explain for EvaluateError {
             }
             Self::Diverges { .. } => {
                 "use more substeps in `integrator`, or check parameters and initial values".into()
+            }
+            Self::NotWritten { .. } => {
+                "every parameter must be a field of the model, or be mapped by `Physics::key`".into()
             }
             Self::NothingFree => "remove `fixed` from a parameter".into(),
         })

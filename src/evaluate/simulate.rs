@@ -158,6 +158,15 @@ impl<'a> Run<'a> {
         })
     }
 
+    /// The drive of the first `most` samples of every segment.
+    pub fn first(&self, most: usize) -> Drive {
+        let mut drive = self.drive.clone();
+        for segment in &mut drive.segments {
+            segment.end = segment.end.min(segment.start.saturating_add(most));
+        }
+        drive
+    }
+
     fn lane(&self, starts: Vec<Vec<f64>>) -> Lane {
         Lane {
             theta: self.plan.signals.theta(),

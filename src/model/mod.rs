@@ -6,6 +6,7 @@
 //! [`StateSpaceModel`] is the registered trait: empty, with `Law` below it.
 
 mod law;
+pub mod equations;
 pub mod lti;
 pub mod linearised;
 mod physics;

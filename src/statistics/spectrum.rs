@@ -11,7 +11,7 @@ fn transform(x: &[f64], size: usize, window: impl Fn(usize) -> f64) -> Vec<f64> 
     if x.is_empty() {
         return vec![];
     }
-    let centre = super::statistics::mean(x);
+    let centre = super::mean(x);
     let forward = RealFftPlanner::<f64>::new().plan_fft_forward(size);
     let mut time: Vec<f64> = x.iter().enumerate().map(|(k, v)| (v - centre) * window(k)).collect();
     time.resize(size, 0.0);

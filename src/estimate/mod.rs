@@ -1,0 +1,7 @@
+//! Fits a model's own parameters to a record: grey-box estimation.
+
+mod fit;
+mod rank;
+
+pub use fit::{Estimate, Estimated, estimate};
+pub use rank::Combination;
