@@ -8,6 +8,7 @@ pub mod effect;
 pub mod estimate;
 pub mod evaluate;
 pub mod fault;
+pub mod file;
 pub mod model;
 pub mod optimise;
 #[path = "../plugins/mod.rs"]

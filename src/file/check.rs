@@ -1,0 +1,93 @@
+//! From a file's tables to a system that fits together.
+
+use serde::Deserialize;
+
+use super::document::Document;
+use super::error::FileError;
+use super::node::{Node, Value};
+use crate::fault::Explain;
+use crate::model::StateSpaceModel;
+use crate::model::equations::{Equations, Table};
+use crate::system::{AlsoInto, Hold, Integrator, Placed, Sampling, System, SystemError};
+
+/// The keys of a model file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Keys {
+    #[serde(default)]
+    sampling_time: Option<f64>,
+    #[serde(default)]
+    integrator: Integrator,
+    #[serde(default)]
+    hold: Hold,
+    model: Box<dyn StateSpaceModel>,
+    #[serde(default)]
+    effects: Vec<Placed>,
+}
+
+/// Reads a system and checks that it can be simulated.
+pub fn system(document: &Document) -> Result<System, FileError> {
+    let Keys { sampling_time, integrator, hold, model, effects } = document.read()?;
+    let system = System { sampling: Sampling { sampling_time, integrator, hold }, model, effects };
+    faults(document, system.model.as_ref())?;
+    match system.plan(sampling_time.unwrap_or(1.0)) {
+        Ok(_) => Ok(system),
+        Err(error) => {
+            let key = key(&error, &system.effects);
+            let at = Box::new(document.spot(&key));
+            Err(FileError::System { at, error: Box::new(error) })
+        }
+    }
+}
+
+/// What the model has against its own values.
+fn faults(document: &Document, model: &dyn StateSpaceModel) -> Result<(), FileError> {
+    let faults = model.faults();
+    let Some(first) = faults.first() else { return Ok(()) };
+    let more = faults.len() - 1;
+    let path = format!("model.{}", model.typetag_name());
+    let (node, _) = document.root().find(&path);
+    if let Some((key, error)) = equations(node, &path) {
+        let at = Box::new(match error.at {
+            Some((at, length)) => document.spot_inside(&key, at, length),
+            None => document.spot(&key),
+        });
+        return Err(FileError::Equations { at, error: Box::new(error), more });
+    }
+    let at = Box::new(document.spot(&format!("{path}.{}", first.key)));
+    Err(FileError::Model { at, fault: Box::new(first.clone()), more })
+}
+
+/// The first thing wrong with equations at the table of a model, or of a model within it,
+/// and its key path: these know the very character, which `Law::faults` has no place for.
+fn equations(node: &Node, path: &str) -> Option<(String, crate::model::equations::EquationsError)> {
+    if path.ends_with(".equations") {
+        let table: Table = super::read::read(node).ok()?;
+        let first = Equations::check(&table).into_iter().next()?;
+        return Some((format!("{path}.{}", first.key), first));
+    }
+    let Value::Table(entries) = &node.value else { return None };
+    entries.iter().find_map(|entry| equations(&entry.node, &format!("{path}.{}", entry.key)))
+}
+
+/// The key path of what is wrong, which may be one of several places of an effect.
+fn key(error: &SystemError, effects: &[Placed]) -> String {
+    let among = match error {
+        SystemError::NoChannel { index, into, .. } => effects.get(*index).and_then(|placed| {
+            let mut also = placed.also_into.iter();
+            let number = also.position(|also| also.channel() == into)?;
+            let gain = matches!(placed.also_into[number], AlsoInto::Gain { .. });
+            let channel = if gain { ".channel" } else { "" };
+            (placed.into != *into).then(|| format!("effects[{index}].also_into[{number}]{channel}"))
+        }),
+        SystemError::NoCoordinate { index, of, .. } => effects.get(*index).and_then(|placed| {
+            let number = placed.also_of.iter().position(|also| also == of)?;
+            (placed.of.as_ref() != Some(of)).then(|| format!("effects[{index}].also_of[{number}]"))
+        }),
+        SystemError::KnobRange { index, effect, knob, .. } => {
+            Some(format!("effects[{index}].effect.{effect}.{knob}"))
+        }
+        _ => None,
+    };
+    among.or_else(|| error.place().key).unwrap_or_default()
+}

@@ -1,0 +1,65 @@
+//! Model files: read with the place of every fault, written so that they read the same.
+//!
+//! ```text
+//! text -- toml | json --> nodes with places -- read --> model, effects -- check --> System
+//! System -- write --> text
+//! ```
+//!
+//! A [`Document`] is any TOML or JSON file; it serves configuration files too. A
+//! [`FileError`] names file, line, column (the character, from 1) and key path, the
+//! nearest known name where one was misspelt, and shows the line
+//! ([`FileError::pretty`]).
+
+mod check;
+mod complaint;
+mod document;
+mod error;
+mod json;
+mod lines;
+mod node;
+mod read;
+mod source;
+mod toml;
+mod write;
+
+use std::path::Path;
+
+use crate::system::System;
+
+pub use complaint::Complaint;
+pub use document::{Document, Format};
+pub use error::FileError;
+pub use source::Spot;
+pub use write::{save, save_with, to_json, to_toml, to_toml_with};
+
+/// Reads a model file, as TOML or JSON by its ending, else by its text, and checks that
+/// the system can be simulated.
+///
+/// # Errors
+///
+/// Anything that is wrong with the file, its model, its effects.
+pub fn load(path: &Path) -> Result<System, FileError> {
+    check::system(&Document::load(path)?)
+}
+
+/// Reads the text of a model file that goes by the name `source`.
+///
+/// # Errors
+///
+/// As [`load`].
+///
+/// # Example
+///
+/// ```
+/// use lacuna::file::{Format, parse};
+///
+/// let text = "sampling_time = 0.1\n[model.duffing]\nmass = -1.0\ndamping = 0.5\nstiffness = 9.0";
+/// let error = parse(text, "press.toml", Format::Toml).unwrap_err();
+/// assert_eq!(
+///     error.to_string(),
+///     "press.toml, line 3, column 8, `model.duffing.mass`: found -1, expected a positive number"
+/// );
+/// ```
+pub fn parse(text: &str, source: &str, format: Format) -> Result<System, FileError> {
+    check::system(&Document::parse(text, source, format)?)
+}
