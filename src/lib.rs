@@ -10,6 +10,7 @@ pub mod evaluate;
 pub mod fault;
 pub mod file;
 pub mod model;
+pub mod network;
 pub mod optimise;
 #[path = "../plugins/mod.rs"]
 pub mod plugins;
