@@ -156,7 +156,9 @@ impl Levenberg {
                     .into_iter()
                     .zip(&steps)
                     .map(|(answer, step)| match answer {
-                        Some(r) => r.iter().zip(&self.residuals).map(|(a, b)| (a - b) / step).collect(),
+                        Some(r) => {
+                            r.iter().zip(&self.residuals).map(|(a, b)| (a - b) / step).collect()
+                        }
                         // a direction that cannot be looked along is not moved along
                         None => vec![0.0; self.residuals.len()],
                     })
@@ -167,6 +169,22 @@ impl Levenberg {
             }
             Phase::Ladder(points, dampings) => self.choose(points, &dampings, answers),
             Phase::Done => {}
+        }
+    }
+
+    /// Whether the derivatives of the residuals are wanted next.
+    pub fn wants_columns(&self) -> bool {
+        matches!(self.phase, Phase::Jacobian(_))
+    }
+
+    /// Takes in the derivatives of the residuals at the present point, one column per
+    /// unknown, in place of the answers that differences need.
+    pub fn absorb_columns(&mut self, columns: Vec<Vec<f64>>) {
+        if self.wants_columns() {
+            self.columns = columns;
+            self.iterations += 1;
+            self.raised = false;
+            self.climb();
         }
     }
 
@@ -245,12 +263,7 @@ impl Levenberg {
         parts.sum::<f64>() * self.variance
     }
 
-    fn choose(
-        &mut self,
-        points: Vec<Vec<f64>>,
-        dampings: &[f64],
-        answers: Vec<Option<Vec<f64>>>,
-    ) {
+    fn choose(&mut self, points: Vec<Vec<f64>>, dampings: &[f64], answers: Vec<Option<Vec<f64>>>) {
         let before = self.squares + self.penalty(&self.point);
         let mut best: Option<(f64, usize, f64)> = None;
         for (i, answer) in answers.iter().enumerate() {
