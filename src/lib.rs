@@ -2,6 +2,8 @@
 
 extern crate self as lacuna;
 
+#[doc(hidden)]
+pub mod cli;
 pub mod data;
 pub mod diagnose;
 pub mod effect;
@@ -18,6 +20,7 @@ pub mod real;
 pub mod register;
 mod statistics;
 pub mod system;
+pub mod watch;
 
 #[doc(hidden)]
 pub mod __private {

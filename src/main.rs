@@ -1,1 +1,5 @@
-fn main(){}
+//! The program; see `lacuna --help`.
+
+fn main() -> std::process::ExitCode {
+    lacuna::cli::main()
+}

@@ -18,7 +18,6 @@ use super::precision::standard_error;
 use super::problem::{Grain, Model, Part, Problem};
 use super::records::{Joined, join};
 use super::score::{Scored, TestData, gain, removed};
-use super::search::Watch;
 use crate::statistics::{normal_tail, rms, whiteness};
 use super::track::{Finished, Tracks};
 use super::words::sentence;
@@ -26,6 +25,7 @@ use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Metrics, Run};
 use crate::model::with_parameters;
 use crate::system::System;
+use crate::watch::Watch;
 
 /// Share of the estimation data that is fitted; the rest chooses.
 const FIT: f64 = 0.7;
@@ -101,7 +101,7 @@ impl<'a> Diagnosis<'a> {
         self
     }
 
-    fn check(&self) -> Result<(), DiagnoseError> {
+    fn check_names(&self) -> Result<(), DiagnoseError> {
         let known: Vec<&str> = crate::register::effects().iter().map(|(card, _)| card.name).collect();
         for name in self.allowed.only.iter().chain(&self.allowed.without) {
             if !known.contains(&name.as_str()) {
@@ -132,7 +132,7 @@ impl<'a> Diagnosis<'a> {
         watch: &dyn Watch,
     ) -> Result<Finding, DiagnoseError> {
         let started = Instant::now();
-        self.check()?;
+        self.check_names()?;
         let signals = self.system.signals();
         let kept: Vec<Record>;
         let (used, test, share) = match test {
@@ -199,6 +199,20 @@ impl<'a> Diagnosis<'a> {
         Ok(finding)
     }
 
+    /// Asks whether records reject the system at all.
+    ///
+    /// # Errors
+    ///
+    /// As [`run`](Self::run).
+    pub fn check(&self, records: &[Record], watch: &dyn Watch) -> Result<Checked, DiagnoseError> {
+        let finding = self.run(records, None, watch)?;
+        let of_the_model = finding.causes.iter().find(|cause| cause.rows.is_none());
+        // what no name was found for counts by its dependence on the inputs
+        let p_value = of_the_model.map_or_else(|| normal_tail(finding.left.dependence), |c| c.p_value);
+        let first_cause = of_the_model.or(finding.causes.first()).cloned();
+        Ok(Checked { p_value, first_cause, interrupted: finding.interrupted })
+    }
+
     /// Says at which sample a baseline leaves the finite numbers, if it does.
     fn check_baseline(&self, record: &Record) -> Result<(), EvaluateError> {
         let run = Run::new(self.system, record)?;
@@ -217,6 +231,17 @@ impl<'a> Diagnosis<'a> {
             None => Ok(()),
         }
     }
+}
+
+/// Whether records reject a system.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Checked {
+    /// Probability of data as far from the system's simulation if the system were right.
+    pub p_value: f64,
+    /// What would explain most, if anything was found.
+    pub first_cause: Option<Cause>,
+    /// Whether somebody stopped the search.
+    pub interrupted: bool,
 }
 
 /// Turns what the search found into plain data.

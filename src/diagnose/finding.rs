@@ -57,6 +57,13 @@ pub struct Alternative {
     pub error_removed: f64,
 }
 
+impl std::fmt::Display for Alternative {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} into {}", self.effect, self.into)?;
+        self.of.as_ref().map_or(Ok(()), |of| write!(f, " of {of}"))
+    }
+}
+
 /// A named cause.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Cause {

@@ -23,10 +23,11 @@ mod stage;
 mod track;
 mod words;
 
-pub use diagnosis::Diagnosis;
+pub use diagnosis::{Checked, Diagnosis};
 pub use error::DiagnoseError;
 pub use finding::{
     Alternative, Cause, Curve, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack, Ranked,
     Scores, Series, Track, Value, Verdict,
 };
-pub use search::Watch;
+pub use crate::watch::Watch;
+pub(crate) use words::number;

@@ -9,6 +9,7 @@ use super::nominal::Nominal;
 use super::nuisance::{Nuisance, Refit, refit};
 use super::problem::{Grain, Model, Part, Problem};
 use super::screen::Screen;
+use crate::watch::Watch;
 use crate::statistics::strongest;
 use super::stage::{REFITTED, Trial, stage, trial};
 use crate::statistics::whiteness;
@@ -26,22 +27,6 @@ const STRONG: f64 = 0.6;
 const SET: usize = 4;
 /// First causes that are expanded when one is not enough.
 const BEAM: usize = 5;
-
-/// Where a search tells how far it is, and asks whether to go on.
-pub trait Watch: Sync {
-    /// `done` goes from 0 to 1; `doing` says what is being done.
-    fn tell(&self, done: f64, doing: &str);
-    /// Whether somebody asked to stop with what is known.
-    fn stopped(&self) -> bool;
-}
-
-/// Watches nothing.
-impl Watch for () {
-    fn tell(&self, _: f64, _: &str) {}
-    fn stopped(&self) -> bool {
-        false
-    }
-}
 
 /// One named cause with everything that cannot be told from it.
 #[derive(Debug, Clone)]

@@ -8,7 +8,8 @@ use super::nominal::Nominal;
 use super::nuisance::{Fitted, Key, Nuisance, Refit, refit};
 use super::precision::{covariance, standard_error};
 use super::problem::{Grain, Model, Part, Problem};
-use super::search::{Found, Search, Slot, Watch};
+use super::search::{Found, Search, Slot};
+use crate::watch::Watch;
 use super::candidate::Wire;
 use super::finding::{Moved, Track};
 

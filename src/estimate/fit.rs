@@ -13,6 +13,7 @@ use crate::model::with_parameters;
 use crate::optimise::{Levenberg, Settings, Unknown};
 use crate::statistics::{covariance, deviation};
 use crate::system::{Lane, Placed, System};
+use crate::watch::Watch;
 
 /// Random starts beside the values given.
 const STARTS: usize = 63;
@@ -55,6 +56,8 @@ pub struct Estimate {
     pub nrmse: (f64, f64),
     /// Jacobians made in the final fit.
     pub iterations: usize,
+    /// Whether somebody stopped the fit before its end.
+    pub interrupted: bool,
 }
 
 /// What moves: a parameter, a knob of an effect, or an initial state.
@@ -74,10 +77,24 @@ enum Key {
 ///
 /// If records do not fit the model, nothing is free, or no start can be simulated.
 pub fn estimate(system: &System, records: &[Record], seed: u64) -> Result<Estimate, EvaluateError> {
-    let fit = Fit::new(system, records)?;
-    let (mut best, before) = fit.best_start(seed)?;
+    estimate_with(system, records, &[], seed, &())
+}
+
+/// The same with parameters held by name, and somebody who watches.
+pub(crate) fn estimate_with(
+    system: &System,
+    records: &[Record],
+    held: &[String],
+    seed: u64,
+    watch: &dyn Watch,
+) -> Result<Estimate, EvaluateError> {
+    let fit = Fit::new(system, records, held, watch)?;
+    watch.tell(0.0, "trying starts");
+    let (best, before) = fit.best_start(seed)?;
+    watch.tell(0.3, "fitting");
     let settings = Settings { iterations: 60, tolerance: 1e-9, difference: 1e-5 };
-    let done = fit.run(&[std::mem::take(&mut best)], settings, usize::MAX).swap_remove(0);
+    let done = fit.run(&[best], settings, usize::MAX).swap_remove(0);
+    watch.tell(1.0, "done");
     fit.told(&done, before)
 }
 
@@ -90,15 +107,28 @@ struct Fit<'a> {
     system: &'a System,
     names: Vec<(String, String)>,
     source: String,
+    watch: &'a dyn Watch,
 }
 
 impl<'a> Fit<'a> {
-    fn new(system: &'a System, records: &[Record]) -> Result<Self, EvaluateError> {
+    fn new(
+        system: &'a System,
+        records: &[Record],
+        held: &[String],
+        watch: &'a dyn Watch,
+    ) -> Result<Self, EvaluateError> {
         let runs = records.iter().map(|r| Run::new(system, r)).collect::<Result<Vec<_>, _>>()?;
         let Some(first) = runs.first() else { return Err(EvaluateError::NothingFree) };
         let signals = &first.plan.signals;
+        let known = || signals.parameters.iter().map(|p| p.name.clone());
+        if let Some(name) = held.iter().find(|&name| known().all(|other| other != *name)) {
+            return Err(EvaluateError::NoParameter { name: name.clone(), known: known().collect() });
+        }
         let (mut keys, mut unknowns, mut names) = (vec![], vec![], vec![]);
-        for (p, parameter) in signals.parameters.iter().enumerate().filter(|(_, p)| !p.fixed) {
+        for (p, parameter) in signals.parameters.iter().enumerate() {
+            if parameter.fixed || held.contains(&parameter.name) {
+                continue;
+            }
             let size = if parameter.value == 0.0 { 1.0 } else { parameter.value.abs() };
             keys.push(Key::Theta(p));
             unknowns.push(
@@ -147,7 +177,7 @@ impl<'a> Fit<'a> {
         };
         let spreads = (0..signals.outputs.len()).map(spread).collect();
         let source = records.first().map_or_else(String::new, |r| r.source.clone());
-        Ok(Self { keys, unknowns, spreads, system, names, runs, source })
+        Ok(Self { keys, unknowns, spreads, system, names, runs, source, watch })
     }
 
     fn lane(&self, point: &[f64], r: usize) -> Lane {
@@ -212,7 +242,7 @@ impl<'a> Fit<'a> {
         loop {
             let proposals: Vec<Vec<Vec<f64>>> = fits.iter_mut().map(Levenberg::propose).collect();
             let all: Vec<Vec<f64>> = proposals.iter().flatten().cloned().collect();
-            if all.is_empty() {
+            if all.is_empty() || self.watch.stopped() {
                 return fits;
             }
             let mut answers = self.residuals(&all, most).into_iter();
@@ -259,14 +289,15 @@ impl<'a> Fit<'a> {
         let settings = Settings { iterations: 15, tolerance: 1e-4, difference: 1e-4 };
         let mut followed = self.run(&follow, settings, FIRST);
         followed.sort_by(|a, b| a.squares.total_cmp(&b.squares));
-        let best = followed.into_iter().find(|f| f.squares.is_finite());
+        let best = followed.into_iter().find(|f| f.squares.is_finite()).map(|f| f.point);
+        let best = best.or_else(|| self.watch.stopped().then(|| given.clone()));
         let best = best.ok_or_else(|| EvaluateError::Diverges {
             record: self.source.clone(),
             sample: 0,
             time: 0.0,
         })?;
         let before = self.residuals(&[given], usize::MAX).swap_remove(0);
-        Ok((best.point, before.map_or(f64::INFINITY, |r| mean(&r))))
+        Ok((best, before.map_or(f64::INFINITY, |r| mean(&r))))
     }
 
     fn told(&self, done: &Levenberg, before: f64) -> Result<Estimate, EvaluateError> {
@@ -304,13 +335,17 @@ impl<'a> Fit<'a> {
         let names: Vec<String> = self.names.iter().map(|(name, _)| name.clone()).collect();
         // initial states may explain part of a change: what is left counts
         let mut basis = vec![];
-        for column in &scaled[self.names.len()..] {
+        for column in scaled.iter().skip(self.names.len()) {
             crate::statistics::add_to_basis(&mut basis, column.clone());
         }
-        let relative: Vec<Vec<f64>> = (0..self.names.len())
-            .map(|i| {
-                let factor = if done.point[i] == 0.0 { 1.0 } else { done.point[i].abs() };
-                let mut column: Vec<f64> = done.columns[i].iter().map(|v| v * factor).collect();
+        let relative: Vec<Vec<f64>> = done
+            .columns
+            .iter()
+            .zip(&done.point)
+            .take(self.names.len())
+            .map(|(column, &value)| {
+                let factor = if value == 0.0 { 1.0 } else { value.abs() };
+                let mut column: Vec<f64> = column.iter().map(|v| v * factor).collect();
                 crate::statistics::project(&basis, &mut column);
                 column
             })
@@ -323,6 +358,7 @@ impl<'a> Fit<'a> {
             undetermined,
             nrmse: (before.sqrt(), variance.sqrt()),
             iterations: done.iterations,
+            interrupted: self.watch.stopped(),
         })
     }
 

@@ -4,4 +4,5 @@ mod fit;
 mod rank;
 
 pub use fit::{Estimate, Estimated, estimate};
+pub(crate) use fit::estimate_with;
 pub use rank::Combination;

@@ -57,6 +57,14 @@ pub enum EvaluateError {
         /// What the model said.
         reason: String,
     },
+    /// A name that no parameter has.
+    #[error("the model has no parameter called `{name}`")]
+    NoParameter {
+        /// The name given.
+        name: String,
+        /// Names there are.
+        known: Vec<String>,
+    },
     /// There is nothing to estimate.
     #[error("the model has no free parameter to estimate")]
     NothingFree,
@@ -66,6 +74,7 @@ impl Explain for EvaluateError {
     fn kind(&self) -> Kind {
         match self {
             Self::System(error) => error.kind(),
+            Self::NoParameter { .. } => Kind::Call,
             Self::Diverges { .. } | Self::NotWritten { .. } => Kind::Work,
             _ => Kind::Input,
         }
@@ -79,6 +88,9 @@ impl Explain for EvaluateError {
             }
             Self::TooShort { record, .. } | Self::Step { record, .. } | Self::Diverges { record, .. } => {
                 Place { file: Some(record.clone()), ..Place::default() }
+            }
+            Self::NoParameter { name, .. } => {
+                Place { key: Some(name.clone()), ..Place::default() }
             }
             Self::NothingFree | Self::NotWritten { .. } => Place::default(),
         }
@@ -103,6 +115,12 @@ impl Explain for EvaluateError {
             }
             Self::NotWritten { .. } => {
                 "every parameter must be a field of the model, or be mapped by `Physics::key`".into()
+            }
+            Self::NoParameter { name, known } => {
+                match nearest(name, known.iter().map(String::as_str)) {
+                    Some(near) => format!("did you mean `{near}`? There are: {}", known.join(", ")),
+                    None => format!("there are: {}", known.join(", ")),
+                }
             }
             Self::NothingFree => "remove `fixed` from a parameter".into(),
         })

@@ -1,0 +1,166 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args as Arguments, Parser, Subcommand};
+
+/// Shows what a model's simulation gets wrong, names the cause, extends the model and
+/// measures the gain.
+#[derive(Debug, Parser)]
+#[command(name = "lacuna", version, about, arg_required_else_help = true)]
+pub struct Args {
+    #[command(subcommand)]
+    pub command: Command,
+    #[command(flatten)]
+    pub common: Common,
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Common {
+    /// Seed of everything random
+    #[arg(long, global = true, default_value_t = 0, value_name = "N")]
+    pub seed: u64,
+    /// Threads to work with [default: all]
+    #[arg(long, global = true, value_name = "N", value_parser = positive)]
+    pub threads: Option<usize>,
+    /// One JSON document on stdout, and nothing else there
+    #[arg(long, global = true)]
+    pub json: bool,
+    /// No text beside the result
+    #[arg(long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// More text
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+}
+
+fn positive(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(0) | Err(_) => Err("a whole number, 1 or above, is needed".into()),
+        Ok(count) => Ok(count),
+    }
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// The main job on an embedded record: finds an effect hidden in a mass-spring-damper
+    #[command(after_help = "Example:\n  lacuna demo --out lacuna-out")]
+    Demo(Demo),
+    /// Shows what a model gets wrong on a record, names the cause and measures the gain
+    #[command(after_help = "Example:\n  lacuna diagnose --model press.toml --data est.csv --test test.csv\n\n\
+        Writes report.html, extended.toml and diagnosis.json into --out. The records are split by\n\
+        time: 70 % fit, 30 % choose; the test record is touched once, for scoring. One Ctrl-C stops\n\
+        with what is known.")]
+    Diagnose(Diagnose),
+    /// Runs a model along the inputs of a record
+    #[command(after_help = "Example:\n  lacuna simulate --model press.toml --data test.csv --out simulated.csv")]
+    Simulate(Simulate),
+    /// Fits the free parameters of a model to records
+    #[command(after_help = "Example:\n  lacuna estimate --model press.toml --data est.csv --out fitted.toml")]
+    Estimate(Estimate),
+    /// Says whether data reject a model: exit status 0 if they do not, 3 if they do
+    #[command(after_help = "Example:\n  lacuna check --model press.toml --data today.csv --level 0.01")]
+    Check(Check),
+    /// Lists the registered models
+    #[command(after_help = "Example:\n  lacuna models --json")]
+    Models,
+    /// Lists the registered effects
+    #[command(after_help = "Example:\n  lacuna effects")]
+    Effects,
+    /// Prints completions for a shell
+    #[command(after_help = "Example:\n  lacuna completions bash > ~/.local/share/bash-completion/completions/lacuna")]
+    Completions {
+        /// bash, zsh, fish, elvish or powershell
+        shell: clap_complete::Shell,
+    },
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct ModelAndData {
+    /// Model file (TOML or JSON)
+    #[arg(long, value_name = "FILE")]
+    pub model: PathBuf,
+    /// Record (CSV); may be repeated for several records of one machine
+    #[arg(long, value_name = "FILE", required = true)]
+    pub data: Vec<PathBuf>,
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Demo {
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Diagnose {
+    #[command(flatten)]
+    pub on: ModelAndData,
+    /// Record for scoring, used for nothing else [default: the last 20 % of the data]
+    #[arg(long, value_name = "FILE")]
+    pub test: Option<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    pub out: PathBuf,
+    /// Effects to look for, and no others
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',', num_args = 1..)]
+    pub only: Vec<String>,
+    /// Effects not to look for
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',', num_args = 1..)]
+    pub without: Vec<String>,
+    /// Parameters that are right
+    #[arg(long, value_name = "PARAMETER", value_delimiter = ',', num_args = 1..)]
+    pub fix: Vec<String>,
+    /// Causes at most
+    #[arg(long, value_name = "N", default_value_t = 5)]
+    pub max_causes: usize,
+    /// Samples from which the test record's initial state is estimated; its figures leave
+    /// them out [default: until the start is forgotten, at most 10 %]
+    #[arg(long, value_name = "N")]
+    pub init: Option<usize>,
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Simulate {
+    /// Model file (TOML or JSON)
+    #[arg(long, value_name = "FILE")]
+    pub model: PathBuf,
+    /// Record (CSV)
+    #[arg(long, value_name = "FILE")]
+    pub data: PathBuf,
+    /// CSV file for the simulated outputs, `<output>_hat`
+    #[arg(long, value_name = "FILE")]
+    pub out: Option<PathBuf>,
+    /// Samples from which the initial state is estimated; the figures leave them out; 0 holds
+    /// the model's `initial` [default: until the start is forgotten, at most 10 %]
+    #[arg(long, value_name = "N")]
+    pub init: Option<usize>,
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Estimate {
+    #[command(flatten)]
+    pub on: ModelAndData,
+    /// Model file to write
+    #[arg(long, value_name = "FILE")]
+    pub out: PathBuf,
+    /// Parameters that are right
+    #[arg(long, value_name = "PARAMETER", value_delimiter = ',', num_args = 1..)]
+    pub fix: Vec<String>,
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Check {
+    #[command(flatten)]
+    pub on: ModelAndData,
+    /// Probability of rejecting a model that is right
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
+    pub level: f64,
+}
+
+fn probability(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(level) if level > 0.0 && level < 1.0 => Ok(level),
+        _ => Err("a number between 0 and 1 is needed".into()),
+    }
+}

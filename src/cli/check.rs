@@ -1,0 +1,49 @@
+//! `lacuna check`.
+
+use serde_json::json;
+
+use super::args::Check;
+use super::failure::Failure;
+use super::input;
+use super::look::Look;
+use crate::data::Record;
+use crate::diagnose::{Diagnosis, number};
+
+/// Exit status where the data reject the model.
+const REJECTED: u8 = 3;
+
+pub fn run(args: &Check, look: &Look) -> Result<u8, Failure> {
+    let (system, want) = input::model(&args.on.model)?;
+    let records: Vec<Record> = args
+        .on
+        .data
+        .iter()
+        .map(|path| input::record(path, &want, look))
+        .collect::<Result<_, _>>()?;
+    look.hear_interrupts()?;
+    let checked = Diagnosis::of(&system).max_causes(1).check(&records, look)?;
+    look.clear();
+    let rejected = checked.p_value < args.level;
+    let p = number(checked.p_value, None);
+    look.headline(&if rejected {
+        format!("These data reject the model (p = {p}, level {}).", args.level)
+    } else {
+        format!("These data do not reject the model (p = {p}, level {}).", args.level)
+    });
+    let first = checked.first_cause.as_ref();
+    if let Some(cause) = first {
+        look.result(&cause.sentence);
+    }
+    let mut document = json!({
+        "schema": 1,
+        "rejected": rejected,
+        "p_value": checked.p_value,
+        "level": args.level,
+        "first_cause": first,
+    });
+    if checked.interrupted {
+        document["interrupted"] = json!(true);
+    }
+    look.document(&document);
+    Ok(if rejected { REJECTED } else { 0 })
+}

@@ -1,0 +1,57 @@
+//! `lacuna estimate`.
+
+use serde_json::json;
+
+use super::args::Estimate as Args;
+use super::failure::Failure;
+use super::input;
+use super::look::Look;
+use crate::data::Record;
+use crate::diagnose::number;
+use crate::estimate::{Estimated, estimate_with};
+use crate::file::save;
+
+pub fn run(args: &Args, seed: u64, look: &Look) -> Result<u8, Failure> {
+    let (system, want) = input::model(&args.on.model)?;
+    let records: Vec<Record> = args
+        .on
+        .data
+        .iter()
+        .map(|path| input::record(path, &want, look))
+        .collect::<Result<_, _>>()?;
+    look.hear_interrupts()?;
+    let estimate = estimate_with(&system, &records, &args.fix, seed, look)?;
+    look.clear();
+    save(&estimate.system, &args.out)?;
+    for parameter in &estimate.parameters {
+        look.result(&line(parameter));
+    }
+    for combination in &estimate.undetermined {
+        look.result(&format!("The record cannot tell: {}", combination.text));
+    }
+    let (before, after) = estimate.nrmse;
+    look.result(&format!("NRMSE {before:.4} before, {after:.4} after"));
+    look.result(&format!("Wrote {}", args.out.display()));
+    let mut document = json!({
+        "schema": 1,
+        "parameters": estimate.parameters,
+        "undetermined": estimate.undetermined,
+        "nrmse": { "before": before, "after": after },
+        "model": args.out,
+    });
+    if estimate.interrupted {
+        document["interrupted"] = json!(true);
+    }
+    look.document(&document);
+    Ok(0)
+}
+
+fn line(p: &Estimated) -> String {
+    let value = number(p.value, p.std_error);
+    let spread = match p.std_error {
+        Some(error) => format!(" +- {}", number(error, None)),
+        None if p.at_bound => " (at its bound)".into(),
+        None => " (the record does not tell)".into(),
+    };
+    format!("{} = {value}{spread} {} (was {})", p.name, p.unit, number(p.from, None))
+}

@@ -1,0 +1,106 @@
+//! Errors as a person or a program reads them.
+
+use std::process::ExitCode;
+
+use serde_json::json;
+
+use super::look::{Look, print};
+use crate::data::DataError;
+use crate::diagnose::DiagnoseError;
+use crate::evaluate::EvaluateError;
+use crate::fault::{Explain, Kind, Place};
+use crate::file::FileError;
+use crate::system::SystemError;
+
+/// What ended a command.
+#[derive(Debug)]
+pub struct Failure {
+    kind: Kind,
+    message: String,
+    /// The message with the line of the file and the hint, for people.
+    pretty: String,
+    place: Place,
+    hint: Option<String>,
+}
+
+impl Failure {
+    /// The work failed.
+    pub fn work(message: String) -> Self {
+        Self { kind: Kind::Work, pretty: message.clone(), message, place: Place::default(), hint: None }
+    }
+
+    fn told(error: &dyn Explain) -> Self {
+        Self {
+            kind: error.kind(),
+            message: error.to_string(),
+            pretty: crate::fault::told(error),
+            place: error.place(),
+            hint: error.hint(),
+        }
+    }
+
+    /// Shows it and gives the exit status.
+    pub fn show(self, look: &Look) -> ExitCode {
+        look.clear();
+        if look.json {
+            document(self.kind, &self.message, &self.place, self.hint.as_deref());
+        } else {
+            look.error(&self.pretty);
+        }
+        ExitCode::from(self.kind.exit_status())
+    }
+}
+
+/// A call that could not be understood, or one for help.
+pub fn call(error: &clap::Error) -> ExitCode {
+    use clap::error::ErrorKind::{DisplayHelp, DisplayVersion};
+    let asked = matches!(error.kind(), DisplayHelp | DisplayVersion);
+    let json = std::env::args_os().any(|argument| argument == "--json");
+    if asked {
+        print(&error.render().to_string());
+        return ExitCode::SUCCESS;
+    }
+    if json {
+        let text = error.render().to_string();
+        let mut lines = text.lines().map(str::trim).filter(|line| !line.is_empty());
+        let message = lines.next().unwrap_or_default().trim_start_matches("error: ").to_string();
+        let details: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage")).collect();
+        let message = [&[message.as_str()], &details[..]].concat().join(" ");
+        document(Kind::Call, &message, &Place::default(), Some("`lacuna COMMAND --help` shows an example"));
+    } else {
+        // a message that cannot be shown is no reason for another one
+        let _ = error.print();
+    }
+    ExitCode::from(Kind::Call.exit_status())
+}
+
+fn document(kind: Kind, message: &str, place: &Place, hint: Option<&str>) {
+    let error = json!({
+        "kind": kind,
+        "message": message,
+        "file": place.file,
+        "line": place.line,
+        "column": place.column,
+        "key": place.key,
+        "hint": hint,
+    });
+    print(&format!("{:#}\n", json!({ "schema": 1, "error": error })));
+}
+
+impl From<FileError> for Failure {
+    fn from(error: FileError) -> Self {
+        Self { pretty: error.pretty(), ..Self::told(&error) }
+    }
+}
+
+macro_rules! explained {
+    ($($error:ty),*) => {$(
+        impl From<$error> for Failure {
+            fn from(error: $error) -> Self {
+                Self::told(&error)
+            }
+        }
+    )*};
+}
+
+explained!(DataError, EvaluateError, SystemError, DiagnoseError);

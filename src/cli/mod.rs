@@ -1,0 +1,61 @@
+//! The library's verbs from a terminal.
+//!
+//! ```text
+//! arguments -- args --> a command -- input --> System, Record -- the library --> Outcome
+//! Outcome -- look --> text on stderr, one JSON document on stdout, files
+//! ```
+
+mod args;
+mod check;
+mod demo;
+mod diagnose;
+mod estimate;
+mod failure;
+mod input;
+mod list;
+mod look;
+mod simulate;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Args, Command};
+use failure::Failure;
+use look::Look;
+
+/// Runs the program with the process's arguments.
+pub fn main() -> ExitCode {
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => return failure::call(&error),
+    };
+    let look = Look::new(&args.common);
+    let done = threads(args.common.threads).and_then(|()| run(&args, &look));
+    match done {
+        Ok(status) => ExitCode::from(status),
+        Err(failure) => failure.show(&look),
+    }
+}
+
+/// Runs one command; its exit status.
+fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
+    let seed = args.common.seed;
+    match &args.command {
+        Command::Demo(demo) => demo::run(demo, look),
+        Command::Diagnose(diagnose) => diagnose::run(diagnose, look),
+        Command::Simulate(simulate) => simulate::run(simulate, look),
+        Command::Estimate(estimate) => estimate::run(estimate, seed, look),
+        Command::Check(check) => check::run(check, look),
+        Command::Models => list::models(look),
+        Command::Effects => list::effects(look),
+        Command::Completions { shell } => list::completions(*shell, look),
+    }
+}
+
+/// Sets how many threads the library works with.
+fn threads(count: Option<usize>) -> Result<(), Failure> {
+    let Some(count) = count else { return Ok(()) };
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build_global();
+    pool.map_err(|error| Failure::work(format!("{count} threads cannot be started: {error}")))
+}

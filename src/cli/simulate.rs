@@ -1,0 +1,72 @@
+//! `lacuna simulate`.
+
+use serde_json::{Map, Value, json};
+
+use super::args::Simulate;
+use super::failure::Failure;
+use super::input;
+use super::look::Look;
+use crate::data::Record;
+use crate::diagnose::number;
+use crate::evaluate::{Metrics, Simulation};
+
+pub fn run(args: &Simulate, look: &Look) -> Result<u8, Failure> {
+    let (system, want) = input::model(&args.model)?;
+    let record = input::record_to_simulate(&args.data, &want, look)?;
+    let run = Simulation::of(&system, &record, input::init(args.init))?;
+    if let Some(path) = &args.out {
+        simulated(&run, &want.outputs, &record)?.write_csv(path)?;
+    }
+    for (name, metrics) in &run.metrics {
+        let unit = want.outputs.iter().find(|(n, _)| n == name).map_or("", |(_, unit)| unit);
+        look.result(&format!("{name}: {}", sentence(metrics, unit)));
+    }
+    if let Some(sample) = run.diverged_at {
+        look.result(&format!(
+            "The simulation diverges at sample {sample} (t = {} s).",
+            number(record.time(sample), None)
+        ));
+    }
+    if let Some(path) = &args.out {
+        look.result(&format!("Wrote {}", path.display()));
+    }
+    let metrics: Map<String, Value> =
+        run.metrics.iter().map(|(name, metrics)| (name.clone(), json!(metrics))).collect();
+    let initial: Map<String, Value> =
+        run.initial_state.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
+    look.document(&json!({
+        "schema": 1,
+        "metrics": metrics,
+        "init_samples": run.init_samples,
+        "initial_state": initial,
+        "diverged_at": run.diverged_at,
+    }));
+    Ok(0)
+}
+
+/// One line on how good a simulation is.
+fn sentence(metrics: &Metrics, unit: &str) -> String {
+    format!(
+        "RMSE {} {unit}, NRMSE {:.4}, fit {:.1} %",
+        number(metrics.rmse, None),
+        metrics.nrmse,
+        metrics.fit_percent
+    )
+}
+
+/// The simulated outputs as a record; what is not finite is left out.
+fn simulated(
+    run: &Simulation,
+    outputs: &[(String, String)],
+    record: &Record,
+) -> Result<Record, Failure> {
+    let mut to = Record::new(record.sampling_time);
+    to.start = record.start;
+    for ((name, values), (_, unit)) in run.outputs.iter().zip(outputs) {
+        let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+        let finite: Vec<f64> =
+            values.iter().map(|v| if v.is_finite() { *v } else { f64::NAN }).collect();
+        to = to.output(&format!("{name}_hat{unit}"), finite)?;
+    }
+    Ok(to)
+}
