@@ -7,6 +7,7 @@ pub mod cli;
 pub mod data;
 pub mod diagnose;
 pub mod effect;
+pub mod encoder;
 pub mod estimate;
 pub mod evaluate;
 pub mod fault;

@@ -1,0 +1,121 @@
+//! The best linear map on a record (Hoekstra et al., Sec. 3.2).
+
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
+
+use super::{EncoderInitialiser, Found, set_linear, started};
+use crate::encoder::baseline::Examples;
+use crate::encoder::{Baseline, Encoder, EncoderError, LinearMap, Outputs, Spread, Started};
+
+/// min ||Phi W' - X||: windows along the record against the baseline's states there.
+///
+/// The print's rows of Phi mix n and n + 1 samples; here they are the encoder's window, and
+/// a constant. Directions in which the windows of a linear baseline without noise do not
+/// vary get weight 0 (the least-norm solution, in scaled signals).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct LeastSquares {
+    /// Outputs in the windows.
+    pub outputs: Outputs,
+}
+
+/// A solution of the normal equations.
+pub(super) struct Solved {
+    pub map: LinearMap,
+    pub rank: usize,
+    pub condition: f64,
+}
+
+/// Eigenvalues of the windows' covariance below this share of the largest count as 0.
+const RANK: f64 = 1e-13;
+
+/// The map from windows to states with the least sum of squares.
+pub(super) fn solve(examples: &Examples) -> Solved {
+    let n = examples.samples;
+    let (rows, centres, sizes) = scaled(&examples.windows, n);
+    let (states, middles, spans) = scaled(&examples.states, n);
+    let m = centres.len();
+    let mut covariance = DMatrix::zeros(m, m);
+    for (i, a) in rows.chunks_exact(n).enumerate() {
+        for (j, b) in rows.chunks_exact(n).take(i + 1).enumerate() {
+            covariance[(i, j)] = dot(a, b) / n as f64;
+            covariance[(j, i)] = covariance[(i, j)];
+        }
+    }
+    let eigen = covariance.symmetric_eigen();
+    let largest = eigen.eigenvalues.max();
+    let kept: Vec<usize> = (0..m).filter(|&i| eigen.eigenvalues[i] > RANK * largest).collect();
+    let smallest = kept.iter().map(|&i| eigen.eigenvalues[i]).fold(largest, f64::min);
+    // the inverse, on the directions that count
+    let solved = |right: DVector<f64>| {
+        let mut sum = DVector::zeros(m);
+        for &i in &kept {
+            let along = eigen.eigenvectors.column(i);
+            sum.axpy(along.dot(&right) / eigen.eigenvalues[i], &along, 1.0);
+        }
+        sum
+    };
+    let against = |rest: &[f64]| {
+        DVector::from_iterator(m, rows.chunks_exact(n).map(|row| dot(row, rest) / n as f64))
+    };
+    let mut weights = DMatrix::zeros(middles.len(), m);
+    let mut bias = DVector::from_vec(middles);
+    for (s, state) in states.chunks_exact(n).enumerate() {
+        let mut own = solved(against(state));
+        // the normal equations square the condition; what is left over makes up for it
+        let mut rest = state.to_vec();
+        for (row, &weight) in rows.chunks_exact(n).zip(&own) {
+            rest.iter_mut().zip(row).for_each(|(r, x)| *r -= weight * x);
+        }
+        own += solved(against(&rest));
+        for j in 0..m {
+            weights[(s, j)] = own[j] * spans[s] / sizes[j];
+            bias[s] -= weights[(s, j)] * centres[j];
+        }
+    }
+    let condition = (largest / smallest).sqrt();
+    Solved { map: LinearMap { weights, bias }, rank: kept.len(), condition }
+}
+
+/// Rows about their means and over their spreads; means; spreads.
+fn scaled(values: &[f64], n: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
+    let mut rows = values.to_vec();
+    let (mut centres, mut sizes) = (vec![], vec![]);
+    for row in rows.chunks_exact_mut(n) {
+        let Spread { offset, scale } = Spread::of(row);
+        row.iter_mut().for_each(|v| *v = (*v - offset) / scale);
+        centres.push(offset);
+        sizes.push(scale);
+    }
+    (rows, centres, sizes)
+}
+
+/// Eight partial sums, which the compiler keeps in registers.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(x, y)| x * y).sum();
+    for (a, b) in a.zip(b) {
+        for i in 0..8 {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    rest + sums.iter().sum::<f64>()
+}
+
+#[typetag::serde(name = "least_squares")]
+impl EncoderInitialiser for LeastSquares {
+    fn initialise(
+        &self,
+        encoder: &mut dyn Encoder,
+        baseline: &Baseline<'_>,
+        seed: u64,
+    ) -> Result<Started, EncoderError> {
+        let initialiser = "least_squares";
+        baseline.prepare(encoder, seed)?;
+        let solved = solve(&baseline.examples(encoder.window(), self.outputs)?);
+        set_linear(initialiser, encoder, &solved.map)?;
+        let (rank, condition) = (Some(solved.rank), Some(solved.condition));
+        started(initialiser, encoder, baseline, Found { rank, condition, ..Found::default() })
+    }
+}

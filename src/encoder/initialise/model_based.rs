@@ -1,0 +1,178 @@
+//! From the baseline's equations alone (Hoekstra et al., Sec. 3.1).
+
+use nalgebra::DMatrix;
+use serde::{Deserialize, Serialize};
+
+use super::{EncoderInitialiser, Found, set_linear, started};
+use crate::encoder::{Baseline, Encoder, EncoderError, Reconstruction, SampledLinear, Started};
+use crate::system::Hold;
+
+/// The reconstructability map of a linear baseline, eq. `final_noiseless`.
+///
+/// Rows of augmented states stay at random; hidden layers have no say at first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reconstruct {}
+
+/// The same for a linear baseline with a noise model in innovation form, eq. `noisy:final`.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Innovation {
+    /// K, one row per state, one column per output; the model's own where it is absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Vec<Vec<f64>>>,
+}
+
+/// The same for the linearisation of any baseline (Sec. 3.1.3). At a point that is no
+/// equilibrium the constants of the map go into the encoder's bias (its footnote).
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Linearised {
+    /// The point.
+    #[serde(default)]
+    pub about: About,
+    /// K as in [`Innovation`]; none where it is absent.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gain: Option<Vec<Vec<f64>>>,
+}
+
+/// Where a baseline is linearised.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum About {
+    /// The equilibrium nearest 0 with inputs 0.
+    #[default]
+    Equilibrium,
+    /// The equilibrium nearest 0 with these inputs.
+    EquilibriumAt {
+        /// Inputs.
+        u: Vec<f64>,
+    },
+    /// This point, whether it is an equilibrium or not.
+    Point {
+        /// States.
+        x: Vec<f64>,
+        /// Inputs.
+        u: Vec<f64>,
+    },
+}
+
+/// A gain of the right size.
+fn gain(rows: &[Vec<f64>], states: usize, outputs: usize) -> Result<DMatrix<f64>, EncoderError> {
+    let count = |what, expected, found| EncoderError::Count { what, expected, found };
+    if rows.len() != states {
+        return Err(count("rows of `gain`, one per state", states, rows.len()));
+    }
+    for row in rows {
+        if row.len() != outputs {
+            return Err(count("columns of `gain`, one per output", outputs, row.len()));
+        }
+    }
+    Ok(DMatrix::from_fn(states, outputs, |i, j| rows[i][j]))
+}
+
+/// The linear baseline of the first two methods.
+fn linear(
+    initialiser: &'static str,
+    baseline: &Baseline<'_>,
+) -> Result<SampledLinear, EncoderError> {
+    if baseline.plan().hold != Hold::Zero {
+        return Err(EncoderError::Hold { initialiser });
+    }
+    SampledLinear::exactly(baseline.system, baseline.plan()).ok_or_else(|| {
+        let model = baseline.system.model.typetag_name().to_string();
+        EncoderError::NotLinear { initialiser, model }
+    })
+}
+
+/// Sets an encoder's linear part to the map of a linear system.
+fn apply(
+    initialiser: &'static str,
+    system: &SampledLinear,
+    encoder: &mut dyn Encoder,
+    baseline: &Baseline<'_>,
+    seed: u64,
+) -> Result<Started, EncoderError> {
+    let names = baseline.signals().states.iter().map(|s| s.signal.name.clone());
+    let window = encoder.window();
+    if window.rows(1, 1) == 0 {
+        return Err(EncoderError::EmptyWindow { n_a: window.n_a, n_b: window.n_b });
+    }
+    let found = Reconstruction::of(system, window, &names.collect::<Vec<_>>())?;
+    baseline.prepare(encoder, seed)?;
+    set_linear(initialiser, encoder, &found.map)?;
+    let mut notes = vec![];
+    if found.condition > 1e6 {
+        notes.push(format!(
+            "the states are hard to tell from {} samples (condition {:.1e}): noise is amplified; \
+             a longer window helps",
+            window.outputs(),
+            found.condition
+        ));
+    }
+    if baseline.plan().states > 0 {
+        notes.push("states of effects are taken to be at rest".into());
+    }
+    let (rank, condition) = (Some(found.rank), Some(found.condition));
+    started(initialiser, encoder, baseline, Found { rank, condition, notes, ..Found::default() })
+}
+
+#[typetag::serde(name = "reconstruct")]
+impl EncoderInitialiser for Reconstruct {
+    fn initialise(
+        &self,
+        encoder: &mut dyn Encoder,
+        baseline: &Baseline<'_>,
+        seed: u64,
+    ) -> Result<Started, EncoderError> {
+        let mut system = linear("reconstruct", baseline)?;
+        system.k = None;
+        apply("reconstruct", &system, encoder, baseline, seed)
+    }
+}
+
+#[typetag::serde(name = "innovation")]
+impl EncoderInitialiser for Innovation {
+    fn initialise(
+        &self,
+        encoder: &mut dyn Encoder,
+        baseline: &Baseline<'_>,
+        seed: u64,
+    ) -> Result<Started, EncoderError> {
+        let initialiser = "innovation";
+        let mut system = linear(initialiser, baseline)?;
+        if let Some(rows) = &self.gain {
+            system.k = Some(gain(rows, system.a.nrows(), system.c.nrows())?);
+        }
+        if system.k.is_none() {
+            let model = baseline.system.model.typetag_name().to_string();
+            return Err(EncoderError::NoGain { initialiser, model });
+        }
+        apply(initialiser, &system, encoder, baseline, seed)
+    }
+}
+
+#[typetag::serde(name = "linearised")]
+impl EncoderInitialiser for Linearised {
+    fn initialise(
+        &self,
+        encoder: &mut dyn Encoder,
+        baseline: &Baseline<'_>,
+        seed: u64,
+    ) -> Result<Started, EncoderError> {
+        // sizes of the differences that a system with effects needs
+        let mut scales = vec![];
+        if !baseline.system.effects.is_empty() {
+            let scaling = baseline.scaling()?;
+            let states = scaling.states.iter().take(baseline.shape().baseline_states);
+            scales = states.chain(&scaling.inputs).map(|s| s.scale).collect();
+        }
+        let mut system =
+            SampledLinear::of_plan(baseline.system, baseline.plan(), &self.about, &scales)?;
+        system.k = match &self.gain {
+            Some(rows) => Some(gain(rows, system.a.nrows(), system.c.nrows())?),
+            None => None,
+        };
+        apply("linearised", &system, encoder, baseline, seed)
+    }
+}

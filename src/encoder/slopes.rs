@@ -1,0 +1,225 @@
+//! Values and exact slopes of a system's sampled map.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{About, EncoderError};
+use crate::model::{Ask, Block, DIRECTIONS, Dual64, LaneNumber, StateSpaceModel};
+use crate::real::{F64x8, Real};
+use crate::system::{Drive, Lane, Method, Plan, System};
+
+/// Values and slopes of a function of states and inputs.
+pub(super) struct Slopes {
+    pub value: DVector<f64>,
+    pub along_x: DMatrix<f64>,
+    pub along_u: DMatrix<f64>,
+}
+
+/// Relative size of the steps by which a system with effects is differentiated.
+const STEP: f64 = 1e-3;
+
+/// The sampled map of a plan.
+pub(super) struct Map<'a> {
+    pub system: &'a System,
+    pub plan: &'a Plan,
+    /// Sizes of states, then inputs, for differences; 1 where there are none.
+    pub scales: &'a [f64],
+}
+
+impl Map<'_> {
+    /// States and inputs to linearise about.
+    pub fn point(&self, about: &About) -> Result<(Vec<f64>, Vec<f64>), EncoderError> {
+        let sizes = self.plan.sizes;
+        let checked = |what, values: &[f64], expected| {
+            if values.len() == expected {
+                return Ok(values.to_vec());
+            }
+            Err(EncoderError::Count { what, expected, found: values.len() })
+        };
+        match about {
+            About::Equilibrium => self.equilibrium(vec![0.0; sizes.u]),
+            About::EquilibriumAt { u } => {
+                self.equilibrium(checked("inputs of the equilibrium", u, sizes.u)?)
+            }
+            About::Point { x, u } => {
+                let x = checked("states of the point", x, sizes.x)?;
+                Ok((x, checked("inputs of the point", u, sizes.u)?))
+            }
+        }
+    }
+
+    /// The state that stays, nearest to 0: Newton's method on the sampled map, each step the
+    /// least-norm one, from 0 and from the model's initial state.
+    fn equilibrium(&self, u: Vec<f64>) -> Result<(Vec<f64>, Vec<f64>), EncoderError> {
+        let n = self.plan.sizes.x;
+        for start in [vec![0.0; n], self.plan.signals.initial()] {
+            let mut x = DVector::from_vec(start);
+            for _ in 0..100 {
+                let Ok((next, _)) = self.slopes(x.as_slice(), &u) else { break };
+                let rest = next.value - &x;
+                if rest.amax() <= 1e-12 * (1.0 + x.amax()) {
+                    return Ok((x.as_slice().to_vec(), u));
+                }
+                let slope = next.along_x - DMatrix::identity(n, n);
+                let Ok(inverse) = slope.pseudo_inverse(1e-12) else { break };
+                x -= inverse * rest;
+            }
+        }
+        Err(EncoderError::NoEquilibrium { inputs: u })
+    }
+
+    /// Next states and outputs at a point, with their slopes.
+    pub fn slopes(&self, x: &[f64], u: &[f64]) -> Result<(Slopes, Slopes), EncoderError> {
+        let (next, output) = if self.system.effects.is_empty() {
+            let law = self.system.model.as_ref();
+            (self.next(law, x, u), self.ask(law, Ask::Output, x, u))
+        } else {
+            self.differences(x, u)
+        };
+        let finite = [&next, &output].into_iter().all(|s| {
+            let slopes = s.along_x.iter().chain(s.along_u.iter());
+            s.value.iter().chain(slopes).all(|v| v.is_finite())
+        });
+        if finite { Ok((next, output)) } else { Err(EncoderError::NoSlope { x: x.to_vec() }) }
+    }
+
+    /// The law's answer with its slopes along all states and inputs: four directions a lane,
+    /// eight lanes a call.
+    fn ask(&self, law: &dyn StateSpaceModel, ask: Ask, x: &[f64], u: &[f64]) -> Slopes {
+        let sizes = self.plan.sizes;
+        let (n, rows) = (x.len() + u.len(), sizes.answer(ask));
+        let fixed =
+            |values: &[f64]| values.iter().map(|&v| Dual64::constant(v)).collect::<Vec<_>>();
+        let theta = fixed(&self.plan.signals.theta());
+        let w = vec![Dual64::constant(0.0); sizes.w];
+        let mut value = DVector::zeros(rows);
+        let mut slopes = DMatrix::zeros(rows, n);
+        let mut derived = vec![Dual64::constant(0.0); sizes.derived];
+        let per_call = DIRECTIONS * F64x8::LANES;
+        for first in (0..n.max(1)).step_by(per_call) {
+            let mut at = fixed(x);
+            at.extend(fixed(u));
+            for (i, entry) in at.iter_mut().skip(first).take(per_call).enumerate() {
+                entry.slope[i % DIRECTIONS].set_lane(i / DIRECTIONS, 1.0);
+            }
+            let (x, u) = at.split_at(x.len());
+            let time = Dual64::constant(0.0);
+            let block = Block { sizes, packs: 1, theta: &theta, derived: &[], x, u, w: &w, time };
+            if sizes.derived > 0 {
+                law.answer(Ask::Derived, Dual64::call(&block, &mut derived));
+            }
+            let mut out = vec![Dual64::constant(0.0); rows];
+            law.answer(ask, Dual64::call(&Block { derived: &derived, ..block }, &mut out));
+            for (row, out) in out.iter().enumerate() {
+                value[row] = out.value.lane(0);
+                for i in first..n.min(first + per_call) {
+                    let (lane, direction) = ((i - first) / DIRECTIONS, (i - first) % DIRECTIONS);
+                    slopes[(row, i)] = out.slope[direction].lane(lane);
+                }
+            }
+        }
+        let along_u = slopes.columns(x.len(), u.len()).into_owned();
+        Slopes { value, along_x: slopes.columns(0, x.len()).into_owned(), along_u }
+    }
+
+    /// The state one sample later with its slopes, through every stage of the integrator.
+    fn next(&self, law: &dyn StateSpaceModel, x: &[f64], u: &[f64]) -> Slopes {
+        if !self.plan.signals.time.is_continuous() {
+            return self.ask(law, Ask::Derivative, x, u);
+        }
+        let n = x.len();
+        let h = self.plan.step();
+        let mut now = Slopes {
+            value: DVector::from_column_slice(x),
+            along_x: DMatrix::identity(n, n),
+            along_u: DMatrix::zeros(n, u.len()),
+        };
+        // the rate at a trial state that itself has slopes
+        let rate = |at: &Slopes| {
+            let own = self.ask(law, Ask::Derivative, at.value.as_slice(), u);
+            Slopes {
+                along_u: &own.along_x * &at.along_u + own.along_u,
+                along_x: own.along_x * &at.along_x,
+                value: own.value,
+            }
+        };
+        let moved = |from: &Slopes, rate: &Slopes, by: f64| Slopes {
+            value: &from.value + &rate.value * by,
+            along_x: &from.along_x + &rate.along_x * by,
+            along_u: &from.along_u + &rate.along_u * by,
+        };
+        for _ in 0..self.plan.substeps {
+            let k1 = rate(&now);
+            if self.plan.method == Method::Euler {
+                now = moved(&now, &k1, h);
+                continue;
+            }
+            let k2 = rate(&moved(&now, &k1, 0.5 * h));
+            let k3 = rate(&moved(&now, &k2, 0.5 * h));
+            let k4 = rate(&moved(&now, &k3, h));
+            for (k, weight) in [(k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)] {
+                now = moved(&now, &k, weight * h / 6.0);
+            }
+        }
+        now
+    }
+
+    /// The same through the whole simulation, by differences: effects have no slopes of
+    /// their own here, and start with their own states at rest.
+    fn differences(&self, x: &[f64], u: &[f64]) -> (Slopes, Slopes) {
+        let (n, nu, ny) = (x.len(), u.len(), self.plan.sizes.y);
+        let scale = |i: usize| self.scales.get(i).copied().filter(|s| *s > 0.0).unwrap_or(1.0);
+        let lane = |x: Vec<f64>| Lane {
+            theta: self.plan.signals.theta(),
+            knobs: self.plan.knob_values(),
+            starts: vec![x],
+            ..Lane::default()
+        };
+        let run = |u: &[f64], xs: Vec<Vec<f64>>| -> Vec<(DVector<f64>, DVector<f64>)> {
+            let (inputs, one) = (u.iter().map(|&u| vec![u]).collect(), 0..1);
+            let drive = Drive { inputs, segments: vec![one], origins: vec![0] };
+            let lanes: Vec<Lane> = xs.into_iter().map(lane).collect();
+            let tracks = self.system.run(self.plan, &drive, &lanes);
+            let both = tracks.into_iter().map(|track| {
+                let y = track.y.iter().map(|y| y[0]).collect();
+                (DVector::from_vec(track.last), DVector::from_vec(y))
+            });
+            both.collect()
+        };
+        let moved = |values: &[f64], i: usize, by: f64| {
+            let mut values = values.to_vec();
+            values[i] += by;
+            values
+        };
+        const WEIGHTS: [(f64, f64); 4] =
+            [(-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0)];
+        let blank = |rows: usize| Slopes {
+            value: DVector::zeros(rows),
+            along_x: DMatrix::zeros(rows, n),
+            along_u: DMatrix::zeros(rows, nu),
+        };
+        let (mut next, mut output) = (blank(n), blank(ny));
+        let mut lanes = vec![x.to_vec()];
+        for i in 0..n {
+            lanes.extend(WEIGHTS.map(|(by, _)| moved(x, i, by * STEP * scale(i))));
+        }
+        let answers = run(u, lanes);
+        (next.value, output.value) = answers[0].clone();
+        for i in 0..n {
+            for (m, (_, weight)) in WEIGHTS.into_iter().enumerate() {
+                let (x, y) = &answers[1 + 4 * i + m];
+                let weight = weight / (STEP * scale(i));
+                next.along_x.column_mut(i).axpy(weight, x, 1.0);
+                output.along_x.column_mut(i).axpy(weight, y, 1.0);
+            }
+        }
+        for j in 0..nu {
+            for (by, weight) in WEIGHTS {
+                let step = STEP * scale(n + j);
+                let answers = run(&moved(u, j, by * step), vec![x.to_vec()]);
+                next.along_u.column_mut(j).axpy(weight / step, &answers[0].0, 1.0);
+                output.along_u.column_mut(j).axpy(weight / step, &answers[0].1, 1.0);
+            }
+        }
+        (next, output)
+    }
+}

@@ -1,0 +1,66 @@
+//! The figures of Hoekstra et al., Sec. 4.1 and 4.2, on its records and on our own.
+
+#[path = "paper_msd/record.rs"]
+mod record;
+
+use lacuna::evaluate::{Init, Metrics, Simulation};
+use lacuna::model::linearised::Linearised;
+use lacuna::system::System;
+use record::{PERIOD, make, model, read, sampling, system};
+
+/// Where the paper's records lie, beside a checkout that has them.
+const FOLDER: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../shared/data/msd_paper");
+
+fn rmse(system: &System, record: &lacuna::data::Record) -> f64 {
+    Simulation::of(system, record, Init::Samples(50)).unwrap().metrics[0].1.rmse
+}
+
+fn near(what: &str, found: f64, wanted: f64, share: f64) {
+    println!("{what}: {found:.5}, expected {wanted} within {:.0} %", 100.0 * share);
+    assert!((found / wanted - 1.0).abs() <= share, "{what}: {found} instead of {wanted}");
+}
+
+#[test]
+fn the_baseline_is_as_wrong_as_the_paper_says() {
+    let Some(clean) = read(FOLDER, "test.csv", "y_clean") else {
+        println!("skipped: {FOLDER} is not there");
+        return;
+    };
+    let noisy = read(FOLDER, "test.csv", "y").unwrap();
+    let linear = Linearised::new(Box::new(model(0.05)), None);
+    let linear = System::new(linear, sampling());
+    near("nonlinear baseline, noise-free", rmse(&system(0.05), &clean), 0.0400, 0.02);
+    near("nonlinear baseline, noisy", rmse(&system(0.05), &noisy), 0.0465, 0.02);
+    near("linearised baseline, noise-free", rmse(&linear, &clean), 0.2090, 0.02);
+    near("linearised baseline, noisy", rmse(&linear, &noisy), 0.2103, 0.02);
+    // the true system is left with nothing
+    assert!(rmse(&system(0.1), &clean) < 1e-6);
+}
+
+#[test]
+fn records_of_our_own_have_the_statistics_of_the_papers() {
+    assert_eq!(record::lines().len(), 1666);
+    let train = make(2, 1);
+    let u = &train.record.inputs[0];
+    near("std u", u.std(), 10.0, 1e-9);
+    assert_eq!(u.values[..PERIOD], u.values[PERIOD..]);
+    // odd lines only: half-wave symmetry, hence no mean
+    assert!((0..PERIOD / 2).all(|k| (u.values[k] + u.values[k + PERIOD / 2]).abs() < 1e-9));
+    assert!(u.values.iter().fold(0.0, |m: f64, v| m.max(v.abs())) > 30.0);
+    // the transient is gone: both periods are one
+    let off = |k: usize| (train.clean[k] - train.clean[k + PERIOD]).abs();
+    assert!((0..PERIOD).map(off).fold(0.0, f64::max) < 1e-9);
+    let clean = Metrics::of(&train.clean, &vec![0.0; 2 * PERIOD]).unwrap().rmse;
+    near("std of the noise-free output", clean, 0.2369, 0.02);
+    let y = &train.record.outputs[0].values;
+    let noise = Metrics::of(y, &train.clean).unwrap().rmse;
+    near("noise", noise, clean / 10.0, 0.02);
+    let test = make(1, 2);
+    let clean = lacuna::data::Record::new(0.1)
+        .input("u [N]", test.record.inputs[0].values.clone())
+        .and_then(|record| record.output("y [m]", test.clean.clone()))
+        .unwrap();
+    near("nonlinear baseline on our own record", rmse(&system(0.05), &clean), 0.0400, 0.05);
+    let linear = System::new(Linearised::new(Box::new(model(0.05)), None), sampling());
+    near("linearised baseline on our own record", rmse(&linear, &clean), 0.2090, 0.05);
+}
