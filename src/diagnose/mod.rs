@@ -1,6 +1,7 @@
 //! Finds what a simulation gets wrong, names it and measures the gain.
 
 mod candidate;
+mod causes;
 mod curves;
 mod dependence;
 mod diagnosis;
@@ -11,14 +12,17 @@ mod library;
 mod nominal;
 mod nuisance;
 mod precision;
+mod prepared;
 mod problem;
 mod records;
+mod remarks;
 mod score;
 mod screen;
 mod search;
 
 mod spikes;
 mod stage;
+mod teller;
 
 mod track;
 mod words;

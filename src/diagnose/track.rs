@@ -20,6 +20,9 @@ const WINS: f64 = 4.0;
 /// Causes from which on the free track is searched from its own beginning.
 const MANY: usize = 3;
 
+/// Share of the mean square left at which wrong parameters are no suspects any more.
+const SOLVED: f64 = 0.01;
+
 /// One track, finished.
 pub(crate) struct Finished {
     pub track: Track,
@@ -46,14 +49,17 @@ impl Finished {
 pub(crate) struct Tracks<'a, 'b> {
     pub problem: &'a mut Problem<'b>,
     pub nominal: &'a Nominal,
+    /// Where both begin.
+    pub start: &'a Model,
     pub allowed: &'a Allowed,
     pub most: usize,
     pub watch: &'a dyn Watch,
 }
 
 impl Tracks<'_, '_> {
-    /// Searches both tracks from a model; the chosen one comes first.
-    pub fn run(mut self, start: &Model) -> Option<(Finished, Option<Finished>)> {
+    /// Searches both tracks; the chosen one comes first.
+    pub fn run(mut self) -> Option<(Finished, Option<Finished>)> {
+        let start = self.start;
         let trusted = Nuisance::new(self.problem, self.nominal);
         let found = self.search(trusted.clone(), start, (0.0, 0.6))?;
         let settled = found.slots.len() < MANY && !found.full;
@@ -66,7 +72,12 @@ impl Tracks<'_, '_> {
         if free.free.is_empty() {
             return Some((trusted, None));
         }
-        let clean = settled && trusted.dependence < 3.0;
+        let baseline = self.problem.simulate(start, Grain::Fine);
+        let left = baseline.map_or(1.0, |y| {
+            let mean_square = |y: &[Vec<f64>]| self.problem.mean_square(y, Part::Choose);
+            mean_square(&trusted.y) / mean_square(&y).max(f64::MIN_POSITIVE)
+        });
+        let clean = settled && trusted.dependence < 3.0 || left < SOLVED;
         let found = if clean {
             self.carried_over(&free, start, &trusted)
         } else {
@@ -125,7 +136,7 @@ impl Tracks<'_, '_> {
     }
 
     /// The final fit on all data.
-    fn finish(&mut self, track: Track, found: Found, nuisance: Nuisance) -> Option<Finished> {
+    pub fn finish(&mut self, track: Track, found: Found, nuisance: Nuisance) -> Option<Finished> {
         let fitted = refit(self.problem, &nuisance, std::slice::from_ref(&found.model), Refit::last())
             .swap_remove(0)?;
         let y = self.problem.simulate(&fitted.model, Grain::Fine)?;

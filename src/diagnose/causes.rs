@@ -1,0 +1,224 @@
+//! Causes as plain data: numbers, sentences, shares.
+
+use super::candidate::{Candidate, Wire};
+use super::error::DiagnoseError;
+use super::finding::{Alternative, Cause, Value};
+use super::floor::Floor;
+use super::nuisance::{Key, Refit, refit};
+use super::precision::standard_error;
+use super::problem::{Grain, Part};
+use super::score::{Scored, TestData, removed};
+use super::teller::Teller;
+use super::track::Finished;
+use super::words::sentence;
+use crate::statistics::normal_tail;
+
+/// Spikes below this number and this share are chance.
+const SPIKES: usize = 3;
+const SPIKE_SHARE: f64 = 5e-4;
+
+impl Teller<'_, '_> {
+    pub fn causes(
+        &self,
+        chosen: &Finished,
+        test: &TestData,
+        before: &Scored,
+        after: &Scored,
+        floors: &[Option<Floor>],
+    ) -> Result<Vec<Cause>, DiagnoseError> {
+        let model = &chosen.fitted.model;
+        let mut causes = vec![];
+        for (index, added) in model.added.iter().enumerate() {
+            let cause = &added.cause;
+            let bare = model.without(index);
+            let without = if model.added.len() == 1 && chosen.moved.is_empty() {
+                None
+            } else {
+                self.refitted(chosen, &bare)
+            };
+            let (share, score) = match without {
+                Some(without) => {
+                    let scored = test.score(&self.extend(&without)?)?;
+                    let y = self.problem.simulate(&without, Grain::Fine);
+                    let score = y.map_or(chosen.found.slots[index].score, |y| {
+                        self.problem.better(&y, &chosen.y, Part::Choose)
+                    });
+                    (removed(before, &scored, after, floors), score)
+                }
+                None => (removed(before, before, after, floors), chosen.found.slots[index].score),
+            };
+            let values = self.values(chosen, index);
+            let nominal = match cause.wire {
+                Wire::Parameter(p) => Some(self.problem.base.signals.parameters[p].value),
+                _ => None,
+            };
+            let slot = &chosen.found.slots[index];
+            let mut indistinguishable = vec![];
+            for (member, gain) in &slot.set {
+                if !member.same_cause(cause) {
+                    indistinguishable.push(alternative(member, gain.clamp(0.0, 1.0) * share));
+                }
+                for (into, of, _) in &member.twins {
+                    indistinguishable.push(Alternative {
+                        effect: member.effect.into(),
+                        into: into.clone(),
+                        of: of.clone(),
+                        error_removed: gain.clamp(0.0, 1.0) * share,
+                    });
+                }
+            }
+            let runners_up = slot.others.iter().take(4);
+            causes.push(Cause {
+                effect: cause.effect.into(),
+                into: cause.into.clone(),
+                of: cause.of.clone(),
+                also_into: cause.also_into.iter().map(|a| a.channel().to_string()).collect(),
+                also_of: vec![],
+                sentence: sentence(cause, &values, share, nominal),
+                parameters: values,
+                p_value: normal_tail(score).max(1e-300),
+                error_removed: share,
+                indistinguishable,
+                runners_up: runners_up
+                    .map(|(c, gain)| alternative(c, gain.clamp(0.0, 1.0) * share))
+                    .collect(),
+                rows: None,
+            });
+        }
+        Ok(causes)
+    }
+
+    /// Numbers of a cause: values of a parameter are the new value, not its change.
+    fn values(&self, chosen: &Finished, index: usize) -> Vec<Value> {
+        let added = &chosen.fitted.model.added[index];
+        let cause = &added.cause;
+        let knobs = cause.clipped(&added.knobs, self.problem.step(Grain::Fine));
+        let error = |i: usize| {
+            standard_error(&chosen.fitted, chosen.covariance.as_ref(), Key::Knob(index, i))
+        };
+        if let Wire::Parameter(p) = cause.wire {
+            return vec![Value {
+                name: "value".into(),
+                value: chosen.fitted.model.theta[p] + knobs[0],
+                std_error: error(0),
+                unit: cause.units.0.clone(),
+            }];
+        }
+        let knobs = cause.card.knobs.iter().zip(knobs).enumerate();
+        knobs
+            .filter(|(_, (_, value))| value.is_finite())
+            .map(|(i, (knob, value))| Value {
+                name: knob.name.to_string(),
+                value,
+                std_error: error(i),
+                unit: match cause.wire {
+                    Wire::Drift(_) if cause.units.0.is_empty() => "1/s".into(),
+                    Wire::Drift(_) => format!("{}/s", cause.units.0),
+                    _ => knob.unit.text(&cause.units.0, &cause.units.1),
+                },
+            })
+            .collect()
+    }
+
+    /// Parameters that the chosen track moved, as causes.
+    pub fn moved(
+        &self,
+        chosen: &Finished,
+        test: &TestData,
+        before: &Scored,
+        after: &Scored,
+        floors: &[Option<Floor>],
+    ) -> Result<Vec<Cause>, DiagnoseError> {
+        let mut causes = vec![];
+        for moved in &chosen.moved {
+            let Some(p) =
+                self.problem.base.signals.parameters.iter().position(|q| q.name == moved.name)
+            else {
+                continue;
+            };
+            let mut back = chosen.fitted.model.clone();
+            back.theta[p] = moved.from;
+            let mut nuisance = chosen.nuisance.clone();
+            nuisance.free.retain(|&(q, _)| q != p);
+            let models = std::slice::from_ref(&back);
+            let fitted = refit(self.problem, &nuisance, models, Refit::last()).swap_remove(0);
+            let share = match fitted {
+                Some(fitted) => {
+                    let scored = test.score(&self.extend(&fitted.model)?)?;
+                    removed(before, &scored, after, floors)
+                }
+                None => 0.0,
+            };
+            let unit = self.problem.base.signals.parameters[p].unit.clone();
+            let value =
+                Value { name: "value".into(), value: moved.to, std_error: moved.std_error, unit };
+            let far = moved.std_error.map_or(0.0, |e| (moved.to - moved.from).abs() / e);
+            causes.push(Cause {
+                effect: "parameter".into(),
+                into: moved.name.clone(),
+                of: None,
+                also_into: vec![],
+                also_of: vec![],
+                sentence: format!(
+                    "Parameter {} is {} instead of {}, explains {} of the removable error.",
+                    moved.name,
+                    super::words::magnitude(&value, true),
+                    super::words::number(moved.from, None),
+                    super::words::percent(share),
+                ),
+                parameters: vec![value],
+                p_value: (2.0 * normal_tail(far)).max(1e-300),
+                error_removed: share,
+                indistinguishable: vec![],
+                runners_up: vec![],
+                rows: None,
+            });
+        }
+        Ok(causes)
+    }
+
+    /// Spikes, where there are too many to be chance.
+    pub fn outliers(&self, chosen: &Finished) -> Vec<Cause> {
+        let mut causes = vec![];
+        for (o, rows) in chosen.found.spikes.iter().enumerate() {
+            let share = rows.len() as f64 / self.problem.len().max(1) as f64;
+            if rows.len() < SPIKES || share <= SPIKE_SHARE {
+                continue;
+            }
+            let into = self.problem.base.signals.outputs[o].name.clone();
+            causes.push(Cause {
+                effect: "outliers".into(),
+                sentence: format!(
+                    "Outliers in {into}: {} samples ({:.2} %) stand alone far off and were left out.",
+                    rows.len(),
+                    100.0 * share
+                ),
+                into,
+                of: None,
+                also_into: vec![],
+                also_of: vec![],
+                parameters: vec![Value {
+                    name: "value".into(),
+                    value: share,
+                    std_error: None,
+                    unit: String::new(),
+                }],
+                p_value: 1e-9,
+                error_removed: 0.0,
+                indistinguishable: vec![],
+                runners_up: vec![],
+                rows: Some(rows.iter().map(|k| k + 1).collect()),
+            });
+        }
+        causes
+    }
+}
+
+pub fn alternative(cause: &Candidate, error_removed: f64) -> Alternative {
+    Alternative {
+        effect: cause.effect.into(),
+        into: cause.into.clone(),
+        of: cause.of.clone(),
+        error_removed,
+    }
+}

@@ -1,0 +1,121 @@
+//! Records and a baseline, ready to be searched.
+
+use super::error::DiagnoseError;
+use super::library::Allowed;
+use super::nominal::Nominal;
+use super::nuisance::Nuisance;
+use super::problem::{Grain, Model, Problem};
+use super::records::{Joined, join};
+use super::track::{Finished, Tracks};
+use crate::data::Record;
+use crate::diagnose::Track;
+use crate::evaluate::{EvaluateError, Init, Run};
+use crate::system::System;
+use crate::watch::Watch;
+
+/// Samples that a search looks at, at most.
+const MOST: usize = 9000;
+/// Stretches that are taken of a longer record.
+const WINDOWS: usize = 3;
+
+/// Stretches of records that together are too long for a search; `None` where they are not.
+///
+/// A search over some thousand samples finds what one over a million finds, but for what
+/// is hardly visible; all samples are fitted in the end.
+pub(crate) fn windows(records: &[Record]) -> Option<Vec<Record>> {
+    let total: usize = records.iter().map(Record::len).sum();
+    if total <= MOST + MOST / 3 {
+        return None;
+    }
+    let mut windows = vec![];
+    for record in records {
+        let n = record.len();
+        let length = (MOST as f64 * n as f64 / total as f64) as usize / WINDOWS;
+        for w in 0..WINDOWS {
+            let start = w * (n - length) / (WINDOWS - 1);
+            windows.push(record.slice(start..start + length));
+        }
+    }
+    Some(windows)
+}
+
+/// Everything a search starts from.
+pub(crate) struct Prepared<'a> {
+    pub joined: Joined,
+    pub problem: Problem<'a>,
+    /// The baseline with fitted initial states.
+    pub start: Model,
+    pub nominal: Nominal,
+    source: String,
+}
+
+impl<'a> Prepared<'a> {
+    /// Joins records, of each of which the first `share` is fitted and the rest chooses.
+    pub fn new(system: &'a System, records: &[Record], share: f64) -> Result<Self, DiagnoseError> {
+        let joined = join(&system.signals(), records)?;
+        let (step, drive) = (joined.sampling_time, joined.drive.clone());
+        let problem = Problem::new(system, step, drive, &joined.measured, &joined.spans, share);
+        let mut problem = problem.map_err(EvaluateError::from)?;
+        let mut start = problem.baseline();
+        start.starts = records
+            .iter()
+            .map(|record| {
+                let run = Run::new(system, record)?;
+                Ok(run.starts(run.init_samples(Init::Forgotten)))
+            })
+            .collect::<Result<Vec<_>, EvaluateError>>()?
+            .concat();
+        if problem.simulate(&start, Grain::Fine).is_none() {
+            // the fitted start leads nowhere: the stated one may
+            start.starts = problem.baseline().starts;
+        }
+        let source = records.first().map_or_else(String::new, |r| r.source.clone());
+        let nominal = Nominal::new(&problem, &start).ok_or_else(|| diverges(&source))?;
+        problem.coarsen(&start);
+        Ok(Self { joined, problem, start, nominal, source })
+    }
+
+    /// Searches both tracks; the chosen one comes first.
+    pub fn search(
+        &mut self,
+        allowed: &Allowed,
+        most: usize,
+        watch: &dyn Watch,
+    ) -> Result<(Finished, Option<Finished>), DiagnoseError> {
+        let found = self.tracks(allowed, most, watch).run();
+        found.ok_or_else(|| diverges(&self.source).into())
+    }
+
+    /// What a search over windows found, fitted to these records.
+    pub fn finish(&mut self, allowed: &Allowed, found: Finished) -> Result<Finished, DiagnoseError> {
+        let trusted = Nuisance::new(&self.problem, &self.nominal);
+        let nuisance = match found.track {
+            Track::ParametersTrusted => trusted,
+            Track::ParametersFree => trusted.with_parameters(&self.problem, &allowed.fixed),
+        };
+        let mut model = found.fitted.model;
+        model.starts.clone_from(&self.start.starts);
+        let mut of_all = found.found;
+        of_all.model = model;
+        if let Some(y) = self.problem.simulate(&of_all.model, Grain::Fine) {
+            self.problem.flag_spikes(&y);
+        }
+        of_all.spikes = self.problem.spikes();
+        let finished = self.tracks(allowed, 0, &()).finish(found.track, of_all, nuisance);
+        finished.ok_or_else(|| diverges(&self.source).into())
+    }
+
+    fn tracks<'t>(
+        &'t mut self,
+        allowed: &'t Allowed,
+        most: usize,
+        watch: &'t dyn Watch,
+    ) -> Tracks<'t, 'a> {
+        let Self { problem, nominal, start, .. } = self;
+        Tracks { problem, nominal, start, allowed, most, watch }
+    }
+}
+
+fn diverges(source: &str) -> EvaluateError {
+    EvaluateError::Diverges { record: source.into(), sample: 0, time: 0.0 }
+}

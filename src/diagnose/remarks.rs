@@ -1,0 +1,76 @@
+//! What was looked for and not found, and what else is worth knowing.
+
+use super::candidate::{Candidate, Wire};
+use super::finding::{Cause, NotFound};
+use super::problem::Part;
+use super::teller::{DEPENDS, Teller};
+use super::track::Finished;
+use crate::statistics::rms;
+
+impl Teller<'_, '_> {
+    /// The smallest size of every candidate that would have been seen.
+    pub fn not_found(&self, chosen: &Finished) -> Vec<NotFound> {
+        let Some(screen) = chosen.found.last.as_ref().or(chosen.found.first.as_ref()) else {
+            return vec![];
+        };
+        let left = rms(&self.problem.residual(&chosen.y, Part::Fit));
+        let bar = super::stage::gate(screen.columns);
+        let named = |c: &Candidate| chosen.fitted.model.added.iter().any(|a| a.cause.same_cause(c));
+        let mut seen: Vec<(String, String, Option<String>)> = vec![];
+        let mut entries = vec![];
+        for scored in screen.scored.iter().filter(|s| !named(&s.cause)) {
+            let cause = &scored.cause;
+            let triple = (cause.effect.to_string(), cause.into.clone(), cause.of.clone());
+            if seen.contains(&triple) {
+                continue;
+            }
+            seen.push(triple);
+            let smallest = bar * left / scored.unit_effect;
+            let unit = cause.linear.first().map_or_else(String::new, |&i| match cause.wire {
+                Wire::Parameter(_) => cause.units.0.clone(),
+                Wire::Drift(_) => format!("{}/s", cause.units.0),
+                _ => cause.card.knobs[i].unit.text(&cause.units.0, &cause.units.1),
+            });
+            entries.push(NotFound {
+                effect: cause.effect.into(),
+                into: cause.into.clone(),
+                of: cause.of.clone(),
+                smallest_visible: (!cause.blended() && smallest.is_finite()).then_some(smallest),
+                unit,
+                kappa: scored.kappa,
+            });
+        }
+        entries
+    }
+
+    pub fn remarks(&self, chosen: &Finished, causes: &[Cause]) -> Vec<String> {
+        let mut remarks = vec![];
+        if !chosen.fitted.model.added.is_empty() && chosen.dependence > DEPENDS {
+            remarks.push(format!(
+                "What is named is not all of it: what is left still depends on the inputs (score {:.1}).",
+                chosen.dependence
+            ));
+        }
+        if chosen.fitted.model.added.len() > 1 {
+            remarks.push(
+                "Each set of look-alikes holds for the other causes as named: two causes can jointly imitate two others."
+                    .into(),
+            );
+        }
+        if chosen.found.full {
+            remarks.push("The search stopped at the largest number of causes allowed.".into());
+        }
+        let bound = |c: &Cause| c.effect == "coulomb_friction" || c.effect == "stribeck_friction";
+        for cause in causes.iter().filter(|c| bound(c)) {
+            let width = cause.parameters.iter().find(|v| v.name == "width");
+            if let Some(width) = width.filter(|w| w.std_error.is_none_or(|e| e > 0.5 * w.value)) {
+                remarks.push(format!(
+                    "The record does not resolve the width of the friction on {}: it is at most about {}.",
+                    cause.into,
+                    super::words::number(width.value + 2.0 * width.std_error.unwrap_or(0.0), None)
+                ));
+            }
+        }
+        remarks
+    }
+}
