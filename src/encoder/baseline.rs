@@ -1,5 +1,6 @@
 //! What an initialiser is given: the baseline, a record, and the baseline run along it.
 
+use std::ops::Range;
 use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
@@ -219,14 +220,26 @@ impl<'a> Baseline<'a> {
         Ok(Examples { windows: window.gather(&y, &u, &ks), states, samples: ks.len() })
     }
 
-    /// Samples of a segment until a change of its first state has faded from all states'
-    /// outputs, at most a tenth of it.
-    fn settled(&self, segment: &std::ops::Range<usize>) -> usize {
-        let end = segment.start + (MOST * segment.len() as f64) as usize;
-        let first = segment.start..end;
+    /// Samples of a segment until a change of its first state has faded from the outputs, at
+    /// most a tenth of it. Looks no further ahead than it has to.
+    fn settled(&self, segment: &Range<usize>) -> usize {
+        let most = (MOST * segment.len() as f64) as usize;
+        let mut ahead = 64;
+        loop {
+            let within = ahead.min(most);
+            let settled = self.remembered(segment.start..segment.start + within);
+            if 2 * settled <= within || within == most {
+                return settled;
+            }
+            ahead *= 4;
+        }
+    }
+
+    /// Samples at the beginning of a stretch that still remember its first state.
+    fn remembered(&self, stretch: Range<usize>) -> usize {
         let drive = Drive {
-            inputs: self.drive.inputs.iter().map(|u| u[..end].to_vec()).collect(),
-            segments: vec![first],
+            inputs: self.drive.inputs.iter().map(|u| u[..stretch.end].to_vec()).collect(),
+            segments: vec![stretch.clone()],
             origins: vec![0],
         };
         let initial = self.plan.signals.initial();
@@ -237,16 +250,16 @@ impl<'a> Baseline<'a> {
             lanes.push(self.lane(vec![x]));
         }
         let tracks = self.system.run(&self.plan, &drive, &lanes);
-        let mut settled = 0;
+        let mut remembered = 0;
         for moved in &tracks[1..] {
             for (a, b) in tracks[0].y.iter().zip(&moved.y) {
                 let off = |k: usize| (a[k] - b[k]).abs();
-                let largest = (segment.start..end).map(off).fold(0.0, f64::max);
-                let last = (segment.start..end).rev().find(|&k| off(k) > FORGOTTEN * largest);
-                settled = settled.max(last.map_or(0, |k| k + 1 - segment.start));
+                let largest = stretch.clone().map(off).fold(0.0, f64::max);
+                let last = stretch.clone().rev().find(|&k| off(k) > FORGOTTEN * largest);
+                remembered = remembered.max(last.map_or(0, |k| k + 1 - stretch.start));
             }
         }
-        settled
+        remembered
     }
 
     /// How far an encoder's baseline states are from the baseline's own on the record.
@@ -259,7 +272,15 @@ impl<'a> Baseline<'a> {
         encoder: &dyn Encoder,
         of: Outputs,
     ) -> Result<Vec<StateError>, EncoderError> {
-        let examples = self.examples(encoder.window(), of)?;
+        self.score_on(encoder, &self.examples(encoder.window(), of)?)
+    }
+
+    /// The same on examples already made.
+    pub(crate) fn score_on(
+        &self,
+        encoder: &dyn Encoder,
+        examples: &Examples,
+    ) -> Result<Vec<StateError>, EncoderError> {
         let n = examples.samples;
         let estimated = encoder.estimate(&examples.windows, n)?;
         let pairs = estimated.chunks_exact(n).zip(examples.states.chunks_exact(n));

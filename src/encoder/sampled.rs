@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::slopes::Map;
+use super::slopes::{Map, There};
 use super::{About, EncoderError};
 use crate::system::{Hold, Plan, System};
 
@@ -90,9 +90,7 @@ impl SampledLinear {
         if let Some(exact) = Self::exactly(system, plan) {
             return Ok(exact);
         }
-        let map = Map { system, plan, scales };
-        let (x, u) = map.point(about)?;
-        let (next, output) = map.slopes(&x, &u)?;
+        let There { x, u, next, output } = Map::new(system, plan, scales).there(about)?;
         let (x, u) = (DVector::from_vec(x), DVector::from_vec(u));
         Ok(Self {
             f: next.value - &next.along_x * &x - &next.along_u * &u,

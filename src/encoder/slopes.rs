@@ -19,15 +19,44 @@ const STEP: f64 = 1e-3;
 
 /// The sampled map of a plan.
 pub(super) struct Map<'a> {
-    pub system: &'a System,
-    pub plan: &'a Plan,
+    system: &'a System,
+    plan: &'a Plan,
     /// Sizes of states, then inputs, for differences; 1 where there are none.
-    pub scales: &'a [f64],
+    scales: &'a [f64],
+    /// Parameters, own channels and what the law derives from the parameters.
+    theta: Vec<Dual64>,
+    w: Vec<Dual64>,
+    derived: Vec<Dual64>,
 }
 
-impl Map<'_> {
-    /// States and inputs to linearise about.
-    pub fn point(&self, about: &About) -> Result<(Vec<f64>, Vec<f64>), EncoderError> {
+/// A point with the next states and the outputs there.
+pub(super) struct There {
+    pub x: Vec<f64>,
+    pub u: Vec<f64>,
+    pub next: Slopes,
+    pub output: Slopes,
+}
+
+fn fixed(values: &[f64]) -> Vec<Dual64> {
+    values.iter().map(|&v| Dual64::constant(v)).collect()
+}
+
+impl<'a> Map<'a> {
+    pub fn new(system: &'a System, plan: &'a Plan, scales: &'a [f64]) -> Self {
+        let sizes = plan.sizes;
+        let zeros = |n: usize| vec![Dual64::constant(0.0); n];
+        let (theta, w) = (fixed(&plan.signals.theta()), zeros(sizes.w));
+        let mut derived = zeros(sizes.derived);
+        if sizes.derived > 0 {
+            let (x, u, time) = (&zeros(sizes.x)[..], &zeros(sizes.u)[..], Dual64::constant(0.0));
+            let block = Block { sizes, packs: 1, theta: &theta, derived: &[], x, u, w: &w, time };
+            system.model.answer(Ask::Derived, Dual64::call(&block, &mut derived));
+        }
+        Self { system, plan, scales, theta, w, derived }
+    }
+
+    /// The point to linearise about, with the slopes there.
+    pub fn there(&self, about: &About) -> Result<There, EncoderError> {
         let sizes = self.plan.sizes;
         let checked = |what, values: &[f64], expected| {
             if values.len() == expected {
@@ -42,22 +71,24 @@ impl Map<'_> {
             }
             About::Point { x, u } => {
                 let x = checked("states of the point", x, sizes.x)?;
-                Ok((x, checked("inputs of the point", u, sizes.u)?))
+                let u = checked("inputs of the point", u, sizes.u)?;
+                let (next, output) = self.slopes(&x, &u)?;
+                Ok(There { x, u, next, output })
             }
         }
     }
 
     /// The state that stays, nearest to 0: Newton's method on the sampled map, each step the
     /// least-norm one, from 0 and from the model's initial state.
-    fn equilibrium(&self, u: Vec<f64>) -> Result<(Vec<f64>, Vec<f64>), EncoderError> {
+    fn equilibrium(&self, u: Vec<f64>) -> Result<There, EncoderError> {
         let n = self.plan.sizes.x;
         for start in [vec![0.0; n], self.plan.signals.initial()] {
             let mut x = DVector::from_vec(start);
             for _ in 0..100 {
-                let Ok((next, _)) = self.slopes(x.as_slice(), &u) else { break };
-                let rest = next.value - &x;
+                let Ok((next, output)) = self.slopes(x.as_slice(), &u) else { break };
+                let rest = &next.value - &x;
                 if rest.amax() <= 1e-12 * (1.0 + x.amax()) {
-                    return Ok((x.as_slice().to_vec(), u));
+                    return Ok(There { x: x.as_slice().to_vec(), u, next, output });
                 }
                 let slope = next.along_x - DMatrix::identity(n, n);
                 let Ok(inverse) = slope.pseudo_inverse(1e-12) else { break };
@@ -68,7 +99,7 @@ impl Map<'_> {
     }
 
     /// Next states and outputs at a point, with their slopes.
-    pub fn slopes(&self, x: &[f64], u: &[f64]) -> Result<(Slopes, Slopes), EncoderError> {
+    fn slopes(&self, x: &[f64], u: &[f64]) -> Result<(Slopes, Slopes), EncoderError> {
         let (next, output) = if self.system.effects.is_empty() {
             let law = self.system.model.as_ref();
             (self.next(law, x, u), self.ask(law, Ask::Output, x, u))
@@ -87,13 +118,8 @@ impl Map<'_> {
     fn ask(&self, law: &dyn StateSpaceModel, ask: Ask, x: &[f64], u: &[f64]) -> Slopes {
         let sizes = self.plan.sizes;
         let (n, rows) = (x.len() + u.len(), sizes.answer(ask));
-        let fixed =
-            |values: &[f64]| values.iter().map(|&v| Dual64::constant(v)).collect::<Vec<_>>();
-        let theta = fixed(&self.plan.signals.theta());
-        let w = vec![Dual64::constant(0.0); sizes.w];
         let mut value = DVector::zeros(rows);
         let mut slopes = DMatrix::zeros(rows, n);
-        let mut derived = vec![Dual64::constant(0.0); sizes.derived];
         let per_call = DIRECTIONS * F64x8::LANES;
         for first in (0..n.max(1)).step_by(per_call) {
             let mut at = fixed(x);
@@ -102,13 +128,11 @@ impl Map<'_> {
                 entry.slope[i % DIRECTIONS].set_lane(i / DIRECTIONS, 1.0);
             }
             let (x, u) = at.split_at(x.len());
+            let (theta, w, derived) = (&self.theta, &self.w, &self.derived);
             let time = Dual64::constant(0.0);
-            let block = Block { sizes, packs: 1, theta: &theta, derived: &[], x, u, w: &w, time };
-            if sizes.derived > 0 {
-                law.answer(Ask::Derived, Dual64::call(&block, &mut derived));
-            }
+            let block = Block { sizes, packs: 1, theta, derived, x, u, w, time };
             let mut out = vec![Dual64::constant(0.0); rows];
-            law.answer(ask, Dual64::call(&Block { derived: &derived, ..block }, &mut out));
+            law.answer(ask, Dual64::call(&block, &mut out));
             for (row, out) in out.iter().enumerate() {
                 value[row] = out.value.lane(0);
                 for i in first..n.min(first + per_call) {

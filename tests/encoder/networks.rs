@@ -136,3 +136,73 @@ fn encoders_survive_their_own_file_and_refuse_a_broken_one() {
     assert!(matches!(fresh.estimate(&[0.0; 4], 1), Err(EncoderError::NotReady)));
     assert!(fresh.shape().is_none() && fresh.weights().is_empty());
 }
+
+/// An encoder from another crate: what it is inside, nobody sees.
+#[derive(Debug, Clone, serde::Serialize, serde::Deserialize)]
+struct Opaque(ResNetEncoder);
+
+#[typetag::serde(name = "opaque")]
+impl Encoder for Opaque {
+    fn window(&self) -> Window {
+        self.0.window()
+    }
+    fn shape(&self) -> Option<Shape> {
+        self.0.shape()
+    }
+    fn prepare(&mut self, shape: Shape, scaling: Scaling, seed: u64) -> Result<(), EncoderError> {
+        self.0.prepare(shape, scaling, seed)
+    }
+    fn scaling(&self) -> Option<&Scaling> {
+        self.0.scaling()
+    }
+    fn weights(&self) -> &[f64] {
+        self.0.weights()
+    }
+    fn set_weights(&mut self, weights: &[f64]) -> Result<(), EncoderError> {
+        self.0.set_weights(weights)
+    }
+    fn estimate(&self, windows: &[f64], samples: usize) -> Result<Vec<f64>, EncoderError> {
+        self.0.estimate(windows, samples)
+    }
+    fn gradient(
+        &self,
+        windows: &[f64],
+        slopes: &[f64],
+        samples: usize,
+    ) -> Result<Vec<f64>, EncoderError> {
+        self.0.gradient(windows, slopes, samples)
+    }
+    fn copied(&self) -> Box<dyn Encoder> {
+        Box::new(self.clone())
+    }
+}
+
+#[test]
+fn an_encoder_of_another_crate_is_started_too() {
+    let model = lacuna::plugins::systems::Duffing {
+        mass: 0.7,
+        damping: 1.5,
+        stiffness: 40.0,
+        hardening: 500.0,
+        fixed: vec![],
+    };
+    let system = lacuna::system::System::new(model, Default::default());
+    let mut random = Random::new(5);
+    let u: Vec<f64> = (0..400).map(|_| 5.0 * random.normal()).collect();
+    let record = lacuna::data::Record::new(0.05).input("u", u).unwrap();
+    let baseline = Baseline::new(&system, &record).unwrap().augmented(1);
+    let method = Prefit { adam_steps: 20, lbfgs_steps: 10, ..Prefit::default() };
+    let inside = ResNetEncoder::new(Window::past(4), &[5]);
+    let mut known = inside.clone();
+    let by_network = method.initialise(&mut known, &baseline, 2).unwrap();
+    let mut opaque: Box<dyn Encoder> = Box::new(Opaque(inside));
+    let by_itself = method.initialise(opaque.as_mut(), &baseline, 2).unwrap();
+    let (a, b) = (by_network.squared_error(), by_itself.squared_error());
+    assert!((a / b - 1.0).abs() < 1e-6, "{a} {b}");
+    // no linear part is offered, and that is said
+    let error = Linearised::default().initialise(opaque.as_mut(), &baseline, 2).unwrap_err();
+    assert!(
+        matches!(&error, EncoderError::NoLinearPart { initialiser: "linearised", encoder } if encoder == "opaque"),
+        "{error}"
+    );
+}

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{EncoderInitialiser, Found, set_linear, started};
 use crate::encoder::baseline::Examples;
-use crate::encoder::{Baseline, Encoder, EncoderError, LinearMap, Outputs, Spread, Started};
+use crate::encoder::{Baseline, Encoder, EncoderError, LinearMap, Outputs, Started};
 
 /// min ||Phi W' - X||: windows along the record against the baseline's states there.
 ///
@@ -28,6 +28,8 @@ pub(super) struct Solved {
 
 /// Eigenvalues of the windows' covariance below this share of the largest count as 0.
 const RANK: f64 = 1e-13;
+/// Samples whose windows stay near the processor while they are worked on.
+const STRETCH: usize = 512;
 
 /// The map from windows to states with the least sum of squares.
 pub(super) fn solve(examples: &Examples) -> Solved {
@@ -35,14 +37,7 @@ pub(super) fn solve(examples: &Examples) -> Solved {
     let (rows, centres, sizes) = scaled(&examples.windows, n);
     let (states, middles, spans) = scaled(&examples.states, n);
     let m = centres.len();
-    let mut covariance = DMatrix::zeros(m, m);
-    for (i, a) in rows.chunks_exact(n).enumerate() {
-        for (j, b) in rows.chunks_exact(n).take(i + 1).enumerate() {
-            covariance[(i, j)] = dot(a, b) / n as f64;
-            covariance[(j, i)] = covariance[(i, j)];
-        }
-    }
-    let eigen = covariance.symmetric_eigen();
+    let eigen = covariance(&rows, n).symmetric_eigen();
     let largest = eigen.eigenvalues.max();
     let kept: Vec<usize> = (0..m).filter(|&i| eigen.eigenvalues[i] > RANK * largest).collect();
     let smallest = kept.iter().map(|&i| eigen.eigenvalues[i]).fold(largest, f64::min);
@@ -77,15 +72,35 @@ pub(super) fn solve(examples: &Examples) -> Solved {
     Solved { map: LinearMap { weights, bias }, rank: kept.len(), condition }
 }
 
+/// Mean products of all pairs of rows, stretch by stretch so that all rows of one are near.
+fn covariance(rows: &[f64], n: usize) -> DMatrix<f64> {
+    let m = rows.len() / n;
+    let mut sums = DMatrix::<f64>::zeros(m, m);
+    for from in (0..n).step_by(STRETCH) {
+        let part = |i: usize| &rows[i * n + from..i * n + n.min(from + STRETCH)];
+        for i in 0..m {
+            for j in 0..=i {
+                sums[(i, j)] += dot(part(i), part(j));
+            }
+        }
+    }
+    DMatrix::from_fn(m, m, |i, j| sums[(i.max(j), i.min(j))] / n as f64)
+}
+
 /// Rows about their means and over their spreads; means; spreads.
 fn scaled(values: &[f64], n: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
     let mut rows = values.to_vec();
     let (mut centres, mut sizes) = (vec![], vec![]);
     for row in rows.chunks_exact_mut(n) {
-        let Spread { offset, scale } = Spread::of(row);
-        row.iter_mut().for_each(|v| *v = (*v - offset) / scale);
-        centres.push(offset);
-        sizes.push(scale);
+        let centre = row.iter().sum::<f64>() / n as f64;
+        row.iter_mut().for_each(|v| *v -= centre);
+        let size = (dot(row, row) / n as f64).sqrt();
+        // what is left of a constant by rounding is no size
+        let size = if size > 1e-12 * centre.abs() { size } else { 1.0 };
+        let over = 1.0 / size;
+        row.iter_mut().for_each(|v| *v *= over);
+        centres.push(centre);
+        sizes.push(size);
     }
     (rows, centres, sizes)
 }
@@ -113,9 +128,11 @@ impl EncoderInitialiser for LeastSquares {
     ) -> Result<Started, EncoderError> {
         let initialiser = "least_squares";
         baseline.prepare(encoder, seed)?;
-        let solved = solve(&baseline.examples(encoder.window(), self.outputs)?);
+        let examples = baseline.examples(encoder.window(), self.outputs)?;
+        let solved = solve(&examples);
         set_linear(initialiser, encoder, &solved.map)?;
         let (rank, condition) = (Some(solved.rank), Some(solved.condition));
-        started(initialiser, encoder, baseline, Found { rank, condition, ..Found::default() })
+        let found = Found { rank, condition, ..Found::default() };
+        started(initialiser, encoder, baseline, found, Some((self.outputs, &examples)))
     }
 }

@@ -10,6 +10,7 @@ pub use model_based::{About, Innovation, Linearised, Reconstruct};
 pub use prefit::{Prefit, PrefitStart};
 pub use random::Random;
 
+use super::baseline::Examples;
 use super::{Baseline, Encoder, EncoderError, LinearMap, Outputs, Started};
 use crate::optimise::Outcome;
 
@@ -50,19 +51,21 @@ struct Found {
     notes: Vec<String>,
 }
 
-/// Scores the finished encoder.
+/// Scores the finished encoder, also on what it learned from.
 fn started(
     initialiser: &'static str,
     encoder: &dyn Encoder,
     baseline: &Baseline<'_>,
     found: Found,
+    seen: Option<(Outputs, &Examples)>,
 ) -> Result<Started, EncoderError> {
-    let measured = match baseline.is_measured() {
-        true => baseline.score(encoder, Outputs::Measured)?,
-        false => vec![],
+    let score = |of: Outputs| match seen {
+        Some((outputs, examples)) if outputs == of => baseline.score_on(encoder, examples),
+        _ => baseline.score(encoder, of),
     };
+    let states = score(Outputs::Simulated)?;
+    let measured = if baseline.is_measured() { score(Outputs::Measured)? } else { vec![] };
     let Found { rank, condition, optimised, notes } = found;
-    let states = baseline.score(encoder, Outputs::Simulated)?;
     Ok(Started { initialiser, rank, condition, states, measured, optimised, notes })
 }
 

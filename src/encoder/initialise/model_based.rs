@@ -110,11 +110,17 @@ fn apply(
             found.condition
         ));
     }
+    let nu = baseline.shape().inputs;
+    if nu > 0 && window.n_a != window.n_b {
+        let used = window.n_a.min(window.n_b);
+        notes.push(format!("samples further back than {used} have weight 0 at first"));
+    }
     if baseline.plan().states > 0 {
         notes.push("states of effects are taken to be at rest".into());
     }
     let (rank, condition) = (Some(found.rank), Some(found.condition));
-    started(initialiser, encoder, baseline, Found { rank, condition, notes, ..Found::default() })
+    let found = Found { rank, condition, notes, ..Found::default() };
+    started(initialiser, encoder, baseline, found, None)
 }
 
 #[typetag::serde(name = "reconstruct")]

@@ -20,6 +20,6 @@ impl EncoderInitialiser for Random {
         seed: u64,
     ) -> Result<Started, EncoderError> {
         baseline.prepare(encoder, seed)?;
-        started("random", encoder, baseline, Found::default())
+        started("random", encoder, baseline, Found::default(), None)
     }
 }
