@@ -19,6 +19,7 @@ pub mod optimise;
 pub mod plugins;
 pub mod real;
 pub mod register;
+pub mod report;
 mod statistics;
 pub mod system;
 pub mod watch;

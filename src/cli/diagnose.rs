@@ -10,6 +10,7 @@ use super::look::{Look, print};
 use crate::data::Record;
 use crate::diagnose::{Diagnosis, Finding, number};
 use crate::file::save_with;
+use crate::report::Report;
 use crate::system::System;
 
 pub fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
@@ -46,7 +47,8 @@ pub fn look_for(
         system.signals().outputs.iter().map(|s| (s.name.clone(), s.unit.clone())).collect();
     let header: Vec<String> = finding.to_string().lines().map(str::to_string).collect();
     save_with(&finding.extended, &out.join(&finding.extended_model), &header)?;
-    let _ = title;
+    let page = out.join(&finding.report);
+    Report::of(&finding).titled(title).write(&page).map_err(|error| cannot_write(&page, &error))?;
     let document = serde_json::to_string_pretty(&finding)
         .map_err(|error| Failure::work(format!("the result cannot be written: {error}")))?
         + "\n";

@@ -1,0 +1,67 @@
+//! One cause: its curve, its numbers, what looks like it.
+
+use super::page::{Page, share};
+use super::svg::Figure;
+use crate::diagnose::{Alternative, Cause, Curve, Finding, number};
+
+/// The section of a cause.
+pub fn section(page: &mut Page, finding: &Finding, index: usize) {
+    let cause = &finding.causes[index];
+    let number_of = if finding.causes.len() > 1 { format!("{}. ", index + 1) } else { String::new() };
+    page.heading(&format!("{number_of}{}", title(cause)));
+    for curve in finding.series.curves.iter().filter(|c| c.cause == index) {
+        page.raw(&figure(curve).svg());
+        page.element("p", "note",
+            "What the model lacks against the coordinate: dots are estimated from the record \
+             without assuming a shape (bars: two standard errors), the line is the law that was named.");
+    }
+    let rows: Vec<Vec<String>> = cause
+        .parameters
+        .iter()
+        .map(|p| {
+            let spread = p.std_error.map_or_else(
+                || "not resolved by this record".into(),
+                |e| format!("{} to {}", number(p.value - 1.96 * e, Some(e)), number(p.value + 1.96 * e, Some(e))),
+            );
+            vec![p.name.clone(), number(p.value, p.std_error), spread, p.unit.clone()]
+        })
+        .collect();
+    if !rows.is_empty() {
+        page.table(&["parameter", "#value", "95 % interval", "unit"], &rows);
+    }
+    if let Some(rows) = &cause.rows {
+        let shown: Vec<String> = rows.iter().take(60).map(ToString::to_string).collect();
+        let more = if rows.len() > 60 { format!(" and {} more", rows.len() - 60) } else { String::new() };
+        page.element("p", "", &format!("Rows: {}{more}.", shown.join(", ")));
+    }
+    let entry = |what: &str, a: &Alternative| {
+        vec![what.into(), a.effect.clone(), a.into.clone(), a.of.clone().unwrap_or_default(), share(a.error_removed)]
+    };
+    let mut rows = vec![vec![
+        "named".into(), cause.effect.clone(), cause.into.clone(),
+        cause.of.clone().unwrap_or_default(), share(cause.error_removed),
+    ]];
+    rows.extend(cause.indistinguishable.iter().map(|a| entry("looks alike", a)));
+    rows.extend(cause.runners_up.iter().map(|a| entry("runner-up", a)));
+    page.table(&["", "effect", "into", "of", "removes"], &rows);
+}
+
+fn title(cause: &Cause) -> String {
+    match &cause.of {
+        Some(of) => format!("{} into {} of {of}", cause.effect, cause.into),
+        None => format!("{} into {}", cause.effect, cause.into),
+    }
+}
+
+/// The missing quantity against the coordinate.
+pub fn figure(curve: &Curve) -> Figure {
+    let axis = |(name, unit): &(String, String), lead: &str| {
+        let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+        format!("{lead}{name}{unit}")
+    };
+    let dots = curve.knots.iter().map(|&(z, w, e)| (z, w, 2.0 * e)).collect();
+    let figure = Figure::new(&axis(&curve.coordinate, ""), &axis(&curve.channel, "missing in "))
+        .height(320.0);
+    let figure = if curve.knots.is_empty() { figure } else { figure.dots("free", "without a shape", dots) };
+    figure.line("law", "the law named", curve.law.clone())
+}
