@@ -12,6 +12,7 @@ pub mod estimate;
 pub mod evaluate;
 pub mod fault;
 pub mod file;
+pub mod lfr;
 pub mod model;
 pub mod network;
 pub mod optimise;
@@ -22,6 +23,7 @@ pub mod register;
 pub mod report;
 mod statistics;
 pub mod system;
+pub mod train;
 pub mod watch;
 
 #[doc(hidden)]

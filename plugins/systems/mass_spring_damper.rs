@@ -3,6 +3,7 @@
 //! Element i joins mass i - 1 (0: the wall) and mass i. With its stretch r and stretch rate
 //! v it pulls mass i back by k r + a r^3 + c v + d v^3.
 
+use lacuna::model::Pull;
 use lacuna::prelude::*;
 
 /// A chain of masses joined by hardening springs and dampers.
@@ -53,12 +54,8 @@ impl MassSpringDamper {
         let (k, c) = (&theta[n..2 * n], &theta[2 * n..3 * n]);
         let inverse_mass = &at.derived[..n];
         let (a, d) = (&theta[3 * n..4 * n], &theta[4 * n..]);
-        for i in 0..n {
-            dx[2 * i + 1] = w[i];
-        }
-        for (&mass, &u) in self.driven.iter().zip(at.u) {
-            dx[2 * mass - 1] += u;
-        }
+        // each mass is finished when the element behind it is known: nothing is written twice
+        let mut force = R::constant(0.0);
         for i in 0..n {
             let (mut stretch, mut rate) = (x[2 * i], x[2 * i + 1]);
             if i > 0 {
@@ -68,14 +65,56 @@ impl MassSpringDamper {
             let pull = (k[i] + a[i] * stretch * stretch) * stretch
                 + (c[i] + d[i] * rate * rate) * rate
                 + w[n + i];
-            dx[2 * i + 1] -= pull;
             if i > 0 {
-                dx[2 * i - 1] += pull;
+                dx[2 * i - 1] = (force + pull) * inverse_mass[i - 1];
             }
+            force = w[i];
+            for (_, &u) in self.driven.iter().zip(at.u).filter(|(mass, _)| **mass == i + 1) {
+                force += u;
+            }
+            force -= pull;
+            dx[2 * i] = x[2 * i + 1];
+        }
+        dx[2 * n - 1] = force * inverse_mass[n - 1];
+    }
+}
+
+impl MassSpringDamper {
+    /// The adjoint of the same: what moves each force, taken back to stretches and rates.
+    #[inline(always)]
+    fn pull_chain<R: Real, const N: usize>(&self, n: usize, at: &At<R>, pull: Pull<'_, R>) {
+        let n = if N > 0 { N } else { n };
+        let (theta, x, lambda) = (&at.theta[..5 * n], &at.x[..2 * n], &pull.lambda[..2 * n]);
+        let (k, c) = (&theta[n..2 * n], &theta[2 * n..3 * n]);
+        let (a, d) = (&theta[3 * n..4 * n], &theta[4 * n..]);
+        let inverse_mass = &at.derived[..n];
+        let along = &mut pull.x[..2 * n];
+        for i in 0..n {
+            along[2 * i] = R::constant(0.0);
+            along[2 * i + 1] = lambda[2 * i];
         }
         for i in 0..n {
-            dx[2 * i] = x[2 * i + 1];
-            dx[2 * i + 1] *= inverse_mass[i];
+            let (mut stretch, mut rate) = (x[2 * i], x[2 * i + 1]);
+            // element i pulls mass i back and the mass before it forward
+            let mut force = lambda[2 * i + 1] * inverse_mass[i];
+            if i > 0 {
+                stretch -= x[2 * i - 2];
+                rate -= x[2 * i - 1];
+                force -= lambda[2 * i - 1] * inverse_mass[i - 1];
+            }
+            let on_stretch = (k[i] + a[i] * 3.0 * stretch * stretch) * force;
+            let on_rate = (c[i] + d[i] * 3.0 * rate * rate) * force;
+            along[2 * i] -= on_stretch;
+            along[2 * i + 1] -= on_rate;
+            if i > 0 {
+                along[2 * i - 2] += on_stretch;
+                along[2 * i - 1] += on_rate;
+            }
+        }
+        if pull.wants_u {
+            for (&mass, u) in self.driven.iter().zip(pull.u) {
+                *u = lambda[2 * mass - 1] * inverse_mass[mass - 1];
+            }
         }
     }
 }
@@ -191,6 +230,17 @@ impl Physics for MassSpringDamper {
             3 => self.chain::<R, 3>(3, at, dx),
             n => self.chain::<R, 0>(n, at, dx),
         }
+    }
+
+    #[inline(always)]
+    fn pull<R: Real>(&self, at: &At<R>, pull: Pull<'_, R>) -> bool {
+        match at.x.len() / 2 {
+            1 => self.pull_chain::<R, 1>(1, at, pull),
+            2 => self.pull_chain::<R, 2>(2, at, pull),
+            3 => self.pull_chain::<R, 3>(3, at, pull),
+            n => self.pull_chain::<R, 0>(n, at, pull),
+        }
+        true
     }
 
     #[inline(always)]

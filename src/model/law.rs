@@ -103,6 +103,28 @@ pub enum Call<'a> {
     Dual32(&'a Block<'a, Dual32>, &'a mut [Dual32]),
 }
 
+/// The transposed derivatives of a law in one instant, times given numbers.
+#[derive(Debug)]
+pub struct Pull<'a, R> {
+    /// One factor per dx/dt (or next state).
+    pub lambda: &'a [R],
+    /// Takes the sum over lambda_i times the derivative of dx_i/dt along each state.
+    pub x: &'a mut [R],
+    /// Takes the same along each input; left as it is where `wants_u` is false.
+    pub u: &'a mut [R],
+    /// Whether the inputs' derivatives are wanted.
+    pub wants_u: bool,
+}
+
+/// A question for an adjoint, in one of the two precisions; slices are laid out pack by pack.
+#[derive(Debug)]
+pub enum PullCall<'a> {
+    /// Double precision.
+    F64(&'a Block<'a, F64x8>, Pull<'a, F64x8>),
+    /// Single precision.
+    F32(&'a Block<'a, F32x16>, Pull<'a, F32x16>),
+}
+
 /// Double precision with slopes along [`DIRECTIONS`] directions.
 pub type Dual64 = Dual<F64x8, DIRECTIONS>;
 /// Single precision with slopes along [`DIRECTIONS`] directions.
@@ -255,6 +277,12 @@ pub trait Law: Debug + Send + Sync {
 
     /// Answers one question for one block.
     fn answer(&self, ask: Ask, call: Call<'_>);
+
+    /// The derivative's own adjoint, for whole blocks; `false` where the law has none.
+    fn pull(&self, call: PullCall<'_>) -> bool {
+        let _ = call;
+        false
+    }
 
     /// The matrices where the law is linear in states and inputs, so that it can be
     /// discretised exactly; `theta` holds the parameters.

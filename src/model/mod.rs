@@ -13,7 +13,7 @@ mod physics;
 pub(crate) mod probe;
 mod signals;
 
-pub use law::{Ask, Block, Call, DIRECTIONS, Dual32, Dual64, Fault, LaneNumber, Law, Matrices, Sizes};
+pub use law::{Ask, Block, Call, DIRECTIONS, Dual32, Dual64, Fault, LaneNumber, Law, Matrices, Pull, PullCall, Sizes};
 pub use physics::{At, Physics};
 pub use signals::{Parameter, Quantity, Signal, Signals, State, TimeKind};
 

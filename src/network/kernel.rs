@@ -292,3 +292,17 @@ per_pack! {
         }
     }
 }
+
+per_pack! {
+    /// Adds the products of two rows to a line of partial sums.
+    pub(crate) fn inner<E, P>(a: &Row<E>, b: &Row<E>, line: &mut Line<E>) {
+        let mut sum = P::constant(0.0);
+        let mut at = 0;
+        while at < E::BLOCK {
+            // SAFETY: at + N <= BLOCK, the length of a row
+            sum = unsafe { P::load(a.ptr().add(at)).fma(P::load(b.ptr().add(at)), sum) };
+            at += P::N;
+        }
+        add_to::<P>(line, sum);
+    }
+}

@@ -30,6 +30,6 @@ pub use layout::Layout;
 pub use pack::Precision;
 pub use resnet::{ResNet, Start};
 
-pub(crate) use kernel::Instants;
+pub(crate) use kernel::{Instants, add, add_scaled, flush, inner};
 pub(crate) use pack::{Line, Row, per_pack};
 pub(crate) use sweep::{Arranged, Frame};

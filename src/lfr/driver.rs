@@ -1,0 +1,219 @@
+//! A baseline's law prepared for blocks of samples.
+
+use std::ops::Range;
+
+use crate::model::{Ask, Block, DIRECTIONS, LaneNumber, Law, Pull, Sizes};
+use crate::network::Row;
+use crate::real::Real;
+
+use super::Baseline;
+use super::block::Pace;
+use super::number::{Number, per_row, repeated};
+
+/// A baseline prepared for one precision and one value of its parameters.
+pub(crate) struct Driver<'a, E: Number> {
+    pub(super) law: &'a dyn Law,
+    pub sizes: Sizes,
+    pub pace: Pace,
+    pub(super) free: Vec<usize>,
+    pub(super) theta: Vec<f64>,
+    /// Whether derivatives along the inputs are wanted.
+    pub(super) wants_u: bool,
+    /// Whether the law looks at the time, and whether inputs move between samples.
+    pub(super) timed: bool,
+    pub(super) ramps: bool,
+    /// Whether the law has an adjoint of its own that will do.
+    pub(super) adjoint: bool,
+    pub(super) plain: Constants<E::Lanes>,
+    pub(super) groups: Vec<Group<E>>,
+}
+
+/// What stays the same from sample to sample, once for each pack.
+pub(super) struct Constants<R> {
+    pub theta: Vec<R>,
+    pub derived: Vec<R>,
+    pub w: Vec<R>,
+}
+
+/// Directions that dual numbers carry at once: states, wanted inputs and free parameters, in
+/// this order, cut into groups.
+pub(super) struct Group<E: Number> {
+    pub range: Range<usize>,
+    pub constants: Constants<E::Slopes>,
+}
+
+/// What a law looks at: z = [x; u] row by row, and how far the inputs move until the next
+/// sample (empty where they are held), and the time.
+#[derive(Clone, Copy)]
+pub(crate) struct Sight<'a, E: Number> {
+    pub z: &'a [Row<E>],
+    pub du: &'a [Row<E>],
+    pub time: &'a Row<E>,
+}
+
+impl<'a, E: Number> Driver<'a, E> {
+    /// A baseline at the values of its parameters.
+    pub fn new(baseline: &'a Baseline, wants_u: bool) -> Self {
+        let law: &dyn Law = baseline.system.model.as_ref();
+        let empty = Constants { theta: vec![], derived: vec![], w: vec![] };
+        let mut driver = Self {
+            law,
+            sizes: baseline.sizes(),
+            pace: baseline.pace(),
+            free: baseline.free.clone(),
+            theta: vec![],
+            wants_u,
+            timed: looks_at_time(law),
+            ramps: baseline.ramps(),
+            adjoint: false,
+            plain: empty,
+            groups: vec![],
+        };
+        driver.set(&baseline.theta());
+        driver.adjoint = driver.free.is_empty() && driver.has_adjoint();
+        driver
+    }
+
+    /// First direction along inputs, first along parameters, and one beyond the last.
+    pub(super) fn directions(&self) -> [usize; 3] {
+        let inputs = self.sizes.x;
+        let theta = inputs + if self.wants_u { self.sizes.u } else { 0 };
+        [inputs, theta, theta + self.free.len()]
+    }
+
+    /// Takes over other values of all parameters.
+    pub fn set(&mut self, theta: &[f64]) {
+        self.theta = theta.to_vec();
+        self.plain = self.constants::<E::Lanes>(|_, _| {});
+        let [_, first, count] = self.directions();
+        let groups = (0..count).step_by(DIRECTIONS).map(|start| {
+            let range = start..(start + DIRECTIONS).min(count);
+            let seed = |parameter: usize, value: &mut E::Slopes| {
+                let place = self.free.iter().position(|&free| free == parameter);
+                if let Some(d) = place.map(|place| first + place).filter(|d| range.contains(d)) {
+                    E::parts_mut(std::slice::from_mut(value))[0].slope[d - start] =
+                        E::Lanes::constant(1.0);
+                }
+            };
+            let constants = self.constants(seed);
+            Group { range, constants }
+        });
+        self.groups = groups.collect();
+    }
+
+    /// Parameters, moved by `seed`, and what the law derives from them.
+    fn constants<R: LaneNumber>(&self, seed: impl Fn(usize, &mut R)) -> Constants<R> {
+        let (n, packs) = (self.sizes, per_row::<E>());
+        let mut theta: Vec<R> = repeated(&self.theta, packs);
+        for (i, value) in theta.iter_mut().enumerate() {
+            seed(i % n.theta, value);
+        }
+        let zeros = |count: usize| vec![R::constant(0.0); packs * count];
+        let (mut derived, w, x, u) = (zeros(n.derived), zeros(n.w), zeros(n.x), zeros(n.u));
+        if n.derived > 0 {
+            let time = R::constant(0.0);
+            let (theta, w, x, u) = (&theta[..], &w[..], &x[..], &u[..]);
+            let block = Block { sizes: n, packs, theta, derived: &[], x, u, w, time };
+            self.law.answer(Ask::Derived, R::call(&block, &mut derived));
+        }
+        Constants { theta, derived, w }
+    }
+
+    /// How far the inputs move, for a law whose inputs do; nothing where they are held.
+    pub fn ramp<'r>(&self, du: &'r [Row<E>]) -> &'r [Row<E>] {
+        if self.ramps { &du[..self.sizes.u] } else { &[] }
+    }
+
+    /// Asks the law; `time` gives each pack's.
+    pub(super) fn ask<R: LaneNumber>(
+        &self,
+        ask: Ask,
+        constants: &Constants<R>,
+        [x, u]: [&[R]; 2],
+        time: impl Fn(usize) -> R,
+        out: &mut [R],
+    ) {
+        let (sizes, packs) = (self.sizes, per_row::<E>());
+        let Constants { theta, derived, w } = constants;
+        let block = Block { sizes, packs, theta, derived, x, u, w, time: time(0) };
+        if !self.timed {
+            return self.law.answer(ask, R::call(&block, out));
+        }
+        for (pack, out) in out.chunks_mut(sizes.answer(ask).max(1)).enumerate() {
+            self.law.answer(ask, R::call(&one(&block, pack, time(pack)), out));
+        }
+    }
+
+    /// Asks the law's own adjoint.
+    pub(super) fn pull(
+        &self,
+        [x, u, lambda]: [&[E::Lanes]; 3],
+        time: impl Fn(usize) -> E::Lanes,
+        [to_x, to_u]: [&mut [E::Lanes]; 2],
+    ) -> bool {
+        let (sizes, packs, wants_u) = (self.sizes, per_row::<E>(), self.wants_u);
+        let Constants { theta, derived, w } = &self.plain;
+        let block = Block { sizes, packs, theta, derived, x, u, w, time: time(0) };
+        if !self.timed {
+            let pull = Pull { lambda, x: to_x, u: to_u, wants_u };
+            return self.law.pull(E::pull(&block, pull));
+        }
+        (0..packs).all(|pack| {
+            let u = if wants_u { &mut to_u[pack * sizes.u..][..sizes.u] } else { &mut [] };
+            let pull = Pull {
+                lambda: part(lambda, pack, sizes.x),
+                x: &mut to_x[pack * sizes.x..][..sizes.x],
+                u,
+                wants_u,
+            };
+            self.law.pull(E::pull(&one(&block, pack, time(pack)), pull))
+        })
+    }
+
+    /// Whether the law has an adjoint of its own.
+    fn has_adjoint(&self) -> bool {
+        let zeros = |count: usize| vec![E::Lanes::constant(0.0); per_row::<E>() * count];
+        let (x, u, lambda) = (zeros(self.sizes.x), zeros(self.sizes.u), zeros(self.sizes.x));
+        let (mut to_x, mut to_u) = (zeros(self.sizes.x), zeros(self.sizes.u));
+        let time = |_| E::Lanes::constant(0.0);
+        self.pull([&x, &u, &lambda], time, [&mut to_x, &mut to_u])
+    }
+}
+
+/// One pack's share of a slice.
+fn part<R>(all: &[R], pack: usize, size: usize) -> &[R] {
+    &all[pack * size..][..size]
+}
+
+/// One pack of a block.
+fn one<'b, R: Copy>(block: &Block<'b, R>, pack: usize, time: R) -> Block<'b, R> {
+    let n = block.sizes;
+    Block {
+        packs: 1,
+        theta: part(block.theta, pack, n.theta),
+        derived: part(block.derived, pack, n.derived),
+        x: part(block.x, pack, n.x),
+        u: part(block.u, pack, n.u),
+        w: part(block.w, pack, n.w),
+        time,
+        ..*block
+    }
+}
+
+/// Whether a law gives other answers at other times, tried at times from a millisecond to a
+/// year and a handful of points.
+fn looks_at_time(law: &dyn Law) -> bool {
+    use crate::model::probe::value;
+    let sizes = Sizes::of(&law.signals());
+    crate::system::points(law, 3).into_iter().any(|mut point| {
+        [Ask::Derivative, Ask::Output].into_iter().any(|ask| {
+            point.time = 0.0;
+            let first = value(law, sizes, ask, &point);
+            (0..35).any(|power| {
+                point.time = 1e-3 * 2.0_f64.powi(power);
+                let other = value(law, sizes, ask, &point);
+                first.iter().zip(&other).any(|(a, b)| a.to_bits() != b.to_bits())
+            })
+        })
+    })
+}

@@ -1,0 +1,42 @@
+//! Joins blocks by the matrix S into one model.
+//!
+//! The augmented model of Hoekstra et al., eq. `augmentation_structure`, is a linear
+//! fractional representation: known and learned blocks w = φ(z), and one matrix
+//!
+//! ```text
+//! [x+; y; z] = S [x; u; e; w]
+//! ```
+//!
+//! that says which signal goes where. [`Interconnection`] holds S and the blocks;
+//! [`Structure`] builds the usual ones (arXiv 2404.01901, 2602.17297). A path from w back to
+//! z without a state in it is an algebraic loop only if every block along it really passes
+//! it on; real loops are solved in every sample by Newton's method, with exact derivatives.
+
+mod block;
+mod combine;
+mod driver;
+mod engine;
+mod error;
+mod interconnection;
+mod march;
+mod matrix;
+mod newton;
+mod number;
+mod order;
+mod program;
+mod rows;
+mod signal;
+mod structure;
+mod work;
+
+pub use block::{Baseline, Block, Learned};
+pub use error::LfrError;
+pub use interconnection::Interconnection;
+pub use matrix::{Entry, Matrix};
+pub use signal::{Sink, Source};
+pub use structure::{Form, Scales, Structure};
+
+pub(crate) use engine::Engine;
+pub(crate) use number::Number;
+pub(crate) use program::Program;
+pub(crate) use work::Work;

@@ -1,0 +1,178 @@
+//! A trained model: the interconnection and the encoder that starts it.
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::Record;
+use crate::encoder::Encoder;
+use crate::lfr::{Block, Engine, Interconnection, Number};
+use crate::model::Signals;
+
+use super::TrainError;
+use super::course::{Course, Series};
+use super::guess::{Guess, Past};
+use super::run::{Stretch, run};
+
+/// An augmented model with its encoder. It takes and gives physical units and can be saved.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Augmented {
+    /// Baseline, learned blocks and S.
+    pub model: Interconnection,
+    /// From past samples to the first state.
+    pub encoder: Box<dyn Encoder>,
+}
+
+/// Outputs along a record, not a number where nothing was simulated.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// One series per output, in its unit.
+    pub outputs: Vec<Vec<f64>>,
+    /// First simulated sample of each segment that is long enough.
+    pub starts: Vec<usize>,
+    /// Root mean square error of each output, where it was measured.
+    pub rmse: Vec<f64>,
+}
+
+impl Augmented {
+    /// A model and an encoder with weights.
+    ///
+    /// # Errors
+    ///
+    /// If they do not fit together.
+    pub fn new(model: Interconnection, encoder: Box<dyn Encoder>) -> Result<Self, TrainError> {
+        let augmented = Self { model, encoder };
+        augmented.model.check()?;
+        augmented.net()?;
+        Ok(augmented)
+    }
+
+    /// Names and units of the baseline's signals.
+    pub(crate) fn signals(&self) -> Option<Signals> {
+        self.model.blocks.iter().find_map(|block| match block {
+            Block::Baseline(baseline) => Some(baseline.system.signals()),
+            Block::Network(_) => None,
+        })
+    }
+
+    /// Sampling time of the baseline, s; 1 without one.
+    pub(crate) fn sampling_time(&self) -> f64 {
+        let baseline = self.model.blocks.iter().find_map(|block| match block {
+            Block::Baseline(baseline) => Some(baseline.sampling_time),
+            Block::Network(_) => None,
+        });
+        baseline.unwrap_or(1.0)
+    }
+
+    /// The encoder's network, with what it looks at.
+    fn net(
+        &self,
+    ) -> Result<(&crate::network::ResNet, crate::network::Frame, Vec<Past>), TrainError> {
+        let net = self.encoder.network().ok_or(TrainError::NoNetwork)?;
+        let (scaling, window) =
+            (self.encoder.scaling().ok_or(TrainError::NoNetwork)?, self.encoder.window());
+        let (n_y, n_u) = (scaling.outputs.len(), scaling.inputs.len());
+        let checks = [
+            ("outputs", self.model.outputs, n_y),
+            ("inputs", self.model.inputs, n_u),
+            ("states", self.model.states, net.layout().outputs()),
+        ];
+        for (what, expected, found) in checks {
+            if expected != found {
+                return Err(TrainError::Shape { what, expected, found });
+            }
+        }
+        let places = window.places(n_y, n_u).into_iter();
+        let pasts = places.map(|p| Past { output: p.output, signal: p.signal, lag: p.lag });
+        Ok((net, scaling.frame(window), pasts.collect()))
+    }
+
+    /// The encoder prepared for one precision.
+    pub(crate) fn guess<E: Number>(&self) -> Result<Guess<E>, TrainError> {
+        let (net, frame, pasts) = self.net()?;
+        Ok(Guess::new(net, frame, pasts))
+    }
+
+    /// Everything that training changes: the model's parameters, then the encoder's weights.
+    pub fn parameters(&self) -> Vec<f64> {
+        [&self.model.parameters()[..], self.encoder.weights()].concat()
+    }
+
+    /// Takes over other values.
+    ///
+    /// # Errors
+    ///
+    /// If their number is another one.
+    pub fn set_parameters(&mut self, values: &[f64]) -> Result<(), TrainError> {
+        let own = self.model.count().min(values.len());
+        self.model.set_parameters(&values[..own])?;
+        Ok(self.encoder.set_weights(&values[own..])?)
+    }
+
+    /// The signals of a record that the model needs, by name, or by place where the record
+    /// has as many.
+    pub(crate) fn series<'r>(
+        &self,
+        record: &'r Record,
+        number: usize,
+    ) -> Result<Series<'r>, TrainError> {
+        let signals = self.signals();
+        let (inputs, outputs) = match &signals {
+            Some(signals) => (&signals.inputs[..], &signals.outputs[..]),
+            None => (&[][..], &[][..]),
+        };
+        let find =
+            |role, own: &'r [crate::data::Signal], names: &[crate::model::Signal], count: usize| {
+                let each = (0..count).map(|i| {
+                    let name = names.get(i).map_or("", |signal| &signal.name);
+                    let named = own.iter().find(|signal| signal.name == name);
+                    let placed = if own.len() == count { own.get(i) } else { None };
+                    let missing =
+                        || TrainError::NoSignal { record: number, role, name: name.into() };
+                    named.or(placed).map(|signal| &signal.values[..]).ok_or_else(missing)
+                });
+                each.collect::<Result<Vec<_>, _>>()
+            };
+        Ok(Series {
+            u: find("input", &record.inputs, inputs, self.model.inputs)?,
+            y: find("output", &record.outputs, outputs, self.model.outputs)?,
+            segments: record.segments.clone(),
+        })
+    }
+
+    /// Free run along a record: each segment starts from the encoder's estimate, as soon as
+    /// there are enough samples before it.
+    ///
+    /// # Errors
+    ///
+    /// If the record lacks a signal, no segment is long enough, or a loop is not solved.
+    pub fn simulate(&self, record: &Record) -> Result<Run, TrainError> {
+        let series = self.series(record, 1)?;
+        let course = Course::<f64>::new(self.sampling_time(), std::slice::from_ref(&series));
+        let window = self.encoder.window();
+        let mut stretches = vec![];
+        for segment in &series.segments {
+            let starts = window.starts(std::slice::from_ref(segment), &series.y, 1);
+            stretches.extend(starts.first().map(|&start| Stretch { start, end: segment.end }));
+        }
+        if stretches.is_empty() {
+            let (which, length, reach) = ("simulated", 1, window.reach());
+            return Err(TrainError::TooShort { which, length, reach });
+        }
+        let samples = series.len();
+        let mut outputs = vec![vec![f64::NAN; samples]; self.model.outputs];
+        let engine = Engine::new(&self.model)?;
+        let unsolved = run(&engine, &self.guess()?, &course, &stretches, |sample| {
+            outputs[sample.output][sample.at] = sample.value;
+        });
+        if let Some(path) = unsolved {
+            return Err(TrainError::Loop { path });
+        }
+        let rmse = outputs.iter().zip(&series.y).map(|(own, measured)| {
+            let pairs = own.iter().zip(measured.iter()).filter(|(a, b)| !a.is_nan() && !b.is_nan());
+            let squares: Vec<f64> = pairs.map(|(a, b)| (a - b) * (a - b)).collect();
+            (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+        });
+        let rmse = rmse.collect();
+        Ok(Run { starts: stretches.iter().map(|s| s.start).collect(), rmse, outputs })
+    }
+}

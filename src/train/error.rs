@@ -1,0 +1,140 @@
+//! What can go wrong in training.
+
+use crate::encoder::EncoderError;
+use crate::fault::{Explain, Kind};
+use crate::lfr::LfrError;
+use crate::optimise::OptimiseError;
+
+/// Training that cannot begin or go on.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TrainError {
+    /// The interconnection is wrong.
+    #[error(transparent)]
+    Model(#[from] LfrError),
+    /// The encoder is wrong.
+    #[error(transparent)]
+    Encoder(#[from] EncoderError),
+    /// The optimiser is wrong.
+    #[error(transparent)]
+    Optimiser(#[from] OptimiseError),
+    /// An encoder that is no network, whose gradient the training step does not know.
+    #[error("the encoder has no network that could be trained")]
+    NoNetwork,
+    /// Encoder and model disagree about a number of signals.
+    #[error("the encoder deals with {found} {what}, the model with {expected}")]
+    Shape {
+        /// Which signals.
+        what: &'static str,
+        /// How many the model has.
+        expected: usize,
+        /// How many the encoder has.
+        found: usize,
+    },
+    /// A record without a signal that the model has.
+    #[error("record {record} lacks the {role} `{name}`")]
+    NoSignal {
+        /// Number of the record, from 1.
+        record: usize,
+        /// `input` or `output`.
+        role: &'static str,
+        /// Name of the signal.
+        name: String,
+    },
+    /// No record is long enough.
+    #[error("no section of {length} samples with {reach} before it fits into the {which} records")]
+    TooShort {
+        /// `training` or `validation`.
+        which: &'static str,
+        /// Samples of a section.
+        length: usize,
+        /// Samples that the encoder looks back.
+        reach: usize,
+    },
+    /// A setting out of range.
+    #[error("`{name}` is {found}, which is not {expected}")]
+    Setting {
+        /// Name of the setting.
+        name: &'static str,
+        /// Its value.
+        found: String,
+        /// What it may be.
+        expected: &'static str,
+    },
+    /// The loss is not finite however small the steps.
+    #[error("the loss was not finite {times} times in a row, at step {step} of epoch {epoch}")]
+    NotFinite {
+        /// How often.
+        times: usize,
+        /// Epoch, from 1.
+        epoch: usize,
+        /// Step in it, from 1.
+        step: usize,
+    },
+    /// An algebraic loop was not solved.
+    #[error("an algebraic loop was not solved: {}", .path.join(" -> "))]
+    Loop {
+        /// Signals along it.
+        path: Vec<String>,
+    },
+    /// A file cannot be read or written.
+    #[error("{path}: {reason}")]
+    File {
+        /// The file.
+        path: String,
+        /// What the system says.
+        reason: String,
+    },
+    /// A checkpoint of another run.
+    #[error("{path} is the checkpoint of another run: {what} differ")]
+    OtherRun {
+        /// The file.
+        path: String,
+        /// What is not the same.
+        what: &'static str,
+    },
+}
+
+impl Explain for TrainError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::NotFinite { .. } | Self::Loop { .. } => Kind::Work,
+            Self::File { .. }
+            | Self::OtherRun { .. }
+            | Self::NoSignal { .. }
+            | Self::TooShort { .. } => Kind::Input,
+            Self::Model(error) => error.kind(),
+            Self::Encoder(error) => error.kind(),
+            Self::Optimiser(error) => error.kind(),
+            _ => Kind::Call,
+        }
+    }
+
+    fn hint(&self) -> Option<String> {
+        Some(
+            match self {
+                Self::Model(error) => return error.hint(),
+                Self::Encoder(error) => return error.hint(),
+                Self::Optimiser(error) => return error.hint(),
+                Self::NoNetwork => "use a `resnet` or `linear` encoder",
+                Self::Shape { .. } => "prepare the encoder with the model's own scaling",
+                Self::NoSignal { .. } => "name the record's columns as the model names its signals",
+                Self::TooShort { .. } => {
+                    "shorten the sections or the encoder's window, or record more"
+                }
+                Self::Setting { .. } => "change it in the training configuration",
+                Self::NotFinite { .. } => {
+                    "start from a better encoder, shorten the sections, or lower the rate"
+                }
+                Self::Loop { .. } => {
+                    "let the learned part see a state instead of a result of this sample"
+                }
+                Self::File { .. } => "check the path and who may write there",
+                Self::OtherRun { .. } => {
+                    "move the file away or go back to the settings it was made with"
+                }
+            }
+            .into(),
+        )
+    }
+}
