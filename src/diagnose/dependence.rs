@@ -8,8 +8,13 @@ use crate::statistics::{deviation, mean, mixture};
 
 /// Samples that a dependence may reach back.
 const REACH: usize = 300;
-/// Lags tried.
+/// Lags tried, fewer in short records.
 const LAGS: usize = 10;
+const FEWEST: usize = 4;
+/// Rows of the regression per column of it, at least.
+const ROWS: usize = 8;
+/// Curves of every coordinate.
+const CURVES: [fn(f64) -> f64; 4] = [|z| z, |z| z * z.abs(), |z| z * z, f64::signum];
 /// Samples used at most; longer records are thinned in whole stretches.
 const MOST: usize = 20_000;
 
@@ -32,8 +37,8 @@ fn of_output(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>], o: usize)
     if n < 100 || split <= reach + 20 || deviation(&r) == 0.0 {
         return 0.0;
     }
-    let columns = features(problem, nominal, from, n, reach);
     let rows = split - reach;
+    let columns = features(problem, nominal, from, n, reach, rows);
     let centres: Vec<(f64, f64)> = columns
         .iter()
         .map(|c| {
@@ -51,7 +56,7 @@ fn of_output(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>], o: usize)
     let right = a.transpose() * &b;
     let held: Vec<f64> = r[split..].iter().map(|v| v - level).collect();
     let mut best: Option<(f64, f64)> = None;
-    for ridge in [1e-2, 1e-1, 1.0] {
+    for ridge in [1e-2, 1e-1, 1.0, 10.0] {
         let mut damped = gram.clone();
         for j in 0..used.len() {
             damped[(j, j)] += ridge * rows as f64;
@@ -80,18 +85,21 @@ fn features(
     from: usize,
     n: usize,
     reach: usize,
+    rows: usize,
 ) -> Vec<Vec<f64>> {
     let base = &problem.base;
-    let mut lags: Vec<usize> = (0..LAGS)
-        .map(|i| (reach as f64).powf(i as f64 / (LAGS - 1) as f64).round() as usize - 1)
-        .collect();
-    lags.dedup();
     let mut kept: Vec<usize> = vec![];
     for entry in 0..base.sources.named - 1 {
         if !kept.iter().any(|&other| base.rates.same(other, entry)) {
             kept.push(entry);
         }
     }
+    let most = rows / (ROWS * CURVES.len() * kept.len().max(1));
+    let count = most.clamp(FEWEST, LAGS);
+    let mut lags: Vec<usize> = (0..count)
+        .map(|i| (reach as f64).powf(i as f64 / (count - 1) as f64).round() as usize - 1)
+        .collect();
+    lags.dedup();
     let mut columns = vec![];
     for entry in kept {
         let z = &nominal.series(entry)[from..from + n];
@@ -100,8 +108,7 @@ fn features(
             continue;
         }
         let unit: Vec<f64> = z.iter().map(|v| (v - centre) / size).collect();
-        let curves: [fn(f64) -> f64; 4] = [|z| z, |z| z * z.abs(), |z| z * z, f64::signum];
-        for curve in curves {
+        for curve in CURVES {
             let bent: Vec<f64> = unit.iter().map(|&v| curve(v)).collect();
             for &lag in &lags {
                 let mut column = vec![0.0; n];

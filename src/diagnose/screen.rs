@@ -90,7 +90,7 @@ struct Sharing<'a, 'b> {
 
 impl Sharing<'_, '_> {
     fn job(&mut self, cause: &Arc<Candidate>, knobs: &[f64], blend: f64) -> Option<Job> {
-        let Wire::Stage(route) = cause.wire else {
+        let (Wire::Stage(route), true) = (&cause.wire, cause.also_into.is_empty()) else {
             return with_candidate(self.problem, self.model, cause, knobs, blend);
         };
         // same effect, same absent bounds, same need of a rate: the same compiled slot
@@ -110,7 +110,7 @@ impl Sharing<'_, '_> {
         let at = job.lane.knobs.len() - own;
         job.lane.knobs[at..].copy_from_slice(&clipped);
         let mut routes = vec![None; job.plan.slots.len()];
-        *routes.last_mut()? = Some(route);
+        *routes.last_mut()? = Some(*route);
         job.lane.routes = routes;
         Some(job)
     }

@@ -9,6 +9,7 @@ use super::nuisance::{Fitted, Key, Nuisance, Refit, refit};
 use super::precision::{covariance, standard_error};
 use super::problem::{Grain, Model, Part, Problem};
 use super::search::{Found, Search, Slot};
+use crate::statistics::whiteness;
 use crate::watch::Watch;
 use super::candidate::Wire;
 use super::finding::{Moved, Track};
@@ -22,6 +23,9 @@ const MANY: usize = 3;
 
 /// Share of the mean square left at which wrong parameters are no suspects any more.
 const SOLVED: f64 = 0.01;
+
+/// Score from which on a residual is not white.
+const COLOURED: f64 = 10.0;
 
 /// One track, finished.
 pub(crate) struct Finished {
@@ -77,7 +81,10 @@ impl Tracks<'_, '_> {
             let mean_square = |y: &[Vec<f64>]| self.problem.mean_square(y, Part::Choose);
             mean_square(&trusted.y) / mean_square(&y).max(f64::MIN_POSITIVE)
         });
-        let clean = settled && trusted.dependence < 3.0 || left < SOLVED;
+        // nothing named, and yet what is left is not white: parameters that were fitted to
+        // make up for a cause may hide it while they are held
+        let hidden = trusted.fitted.model.added.is_empty() && self.colour(&trusted.y) > COLOURED;
+        let clean = settled && trusted.dependence < 3.0 && !hidden || left < SOLVED;
         let found = if clean {
             self.carried_over(&free, start, &trusted)
         } else {
@@ -94,6 +101,12 @@ impl Tracks<'_, '_> {
             _ => free.price() < trusted.price(),
         };
         Some(if take_free { (free, Some(trusted)) } else { (trusted, Some(free)) })
+    }
+
+    /// How far the residual is from white, as a normal score.
+    fn colour(&self, y: &[Vec<f64>]) -> f64 {
+        let r = self.problem.residual(y, Part::All);
+        r.chunks(r.len() / self.problem.y.len()).map(whiteness).fold(0.0, f64::max)
     }
 
     fn search(&mut self, nuisance: Nuisance, start: &Model, share: (f64, f64)) -> Option<Found> {
