@@ -71,11 +71,7 @@ impl Place {
     /// ```
     pub fn lead(&self) -> String {
         let place = self.to_string();
-        if place.is_empty() {
-            place
-        } else {
-            place + ": "
-        }
+        if place.is_empty() { place } else { place + ": " }
     }
 }
 
@@ -166,11 +162,9 @@ mod tests {
 
     #[test]
     fn kinds_serialise_and_exit_as_the_contract_says() {
-        for (kind, text, status) in [
-            (Kind::Call, "call", 2),
-            (Kind::Input, "input", 2),
-            (Kind::Work, "work", 1),
-        ] {
+        for (kind, text, status) in
+            [(Kind::Call, "call", 2), (Kind::Input, "input", 2), (Kind::Work, "work", 1)]
+        {
             assert_eq!(serde_json::to_value(kind).unwrap(), text);
             assert_eq!(kind.to_string(), text);
             assert_eq!(kind.exit_status(), status);

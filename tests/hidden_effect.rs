@@ -36,12 +36,25 @@ fn effects() -> Vec<Hidden> {
         hidden!("cubic", "force_2", Some("v_2"), |s| coefficient(-0.1 * s)),
         hidden!("cubic", "force_1", Some("p_1"), |s| coefficient(-100.0 * s)),
         hidden!("parameter", "a2", None, |s| scaled(1000.0 * (1.0 + s))),
-        hidden!("coulomb_friction", "force_1", Some("v_1"), |s| format!("{{ level = {:?}, width = 0.05 }}", -s)),
-        hidden!("coulomb_friction", "force_2", Some("v_2"), |s| format!("{{ level = {:?}, width = 0.05 }}", -s)),
+        hidden!("coulomb_friction", "force_1", Some("v_1"), |s| format!(
+            "{{ level = {:?}, width = 0.05 }}",
+            -s
+        )),
+        hidden!("coulomb_friction", "force_2", Some("v_2"), |s| format!(
+            "{{ level = {:?}, width = 0.05 }}",
+            -s
+        )),
         hidden!("drag", "force_1", Some("v_1"), |s| coefficient(-0.1 * s)),
         hidden!("drag", "force_2", Some("v_2"), |s| coefficient(-0.1 * s)),
-        hidden!("dead_zone", "joint_2", Some("stretch_2"), |s| format!("{{ slope = 100.0, width = {:?} }}", 0.02 * s)),
-        hidden!("saturation", "u", Some("u"), |s| format!("{{ low = {:?}, high = {:?} }}", -20.0 / s, 20.0 / s)),
+        hidden!("dead_zone", "joint_2", Some("stretch_2"), |s| format!(
+            "{{ slope = 100.0, width = {:?} }}",
+            0.02 * s
+        )),
+        hidden!("saturation", "u", Some("u"), |s| format!(
+            "{{ low = {:?}, high = {:?} }}",
+            -20.0 / s,
+            20.0 / s
+        )),
         hidden!("dead_zone", "u", Some("u"), |s| format!("{{ slope = 1.0, width = {s:?} }}")),
         hidden!("lag", "u", Some("u"), |s| format!("{{ time_constant = {:?} }}", 0.02 * s)),
         hidden!("delay", "u", Some("u"), |s| format!("{{ delay = {:?} }}", 0.02 * s)),
@@ -54,8 +67,14 @@ fn effects() -> Vec<Hidden> {
         hidden!("parameter", "m1", None, |s| scaled(0.5 * (1.0 + s))),
         hidden!("parameter", "c2", None, |s| scaled(0.5 * (1.0 + s))),
         hidden!("drift", "k1", Some("time"), |s| format!("{{ rate = {:?} }}", 0.05 * s)),
-        hidden!("extra_mode", "force_2", Some("p_2"), |s| format!("{{ frequency = 11.0, damping = 0.05, participation = {:?} }}", 0.05 * s)),
-        hidden!("hysteresis", "joint_2", Some("stretch_2"), |s| format!("{{ alpha = {:?}, beta = 20.0, gamma = 10.0 }}", -50.0 * s)),
+        hidden!("extra_mode", "force_2", Some("p_2"), |s| format!(
+            "{{ frequency = 11.0, damping = 0.05, participation = {:?} }}",
+            0.05 * s
+        )),
+        hidden!("hysteresis", "joint_2", Some("stretch_2"), |s| format!(
+            "{{ alpha = {:?}, beta = 20.0, gamma = 10.0 }}",
+            -50.0 * s
+        )),
     ]
 }
 
@@ -74,7 +93,11 @@ fn each_of_25_effects_is_found_and_most_of_its_error_removed() {
         println!(
             "{} {} into {} of {:?}: removed {share:.4}, {:.1} s: {}",
             if hit { "named " } else { "MISSED" },
-            hidden.effect, hidden.into, hidden.of, finding.seconds, names(&finding)
+            hidden.effect,
+            hidden.into,
+            hidden.of,
+            finding.seconds,
+            names(&finding)
         );
     }
     let (share, time) = (median(removed), median(seconds));
@@ -92,7 +115,11 @@ fn nothing_is_named_where_nothing_is_hidden() {
             for seed in 1..=4 {
                 let finding = plant.diagnose(&plant.innocent(Conditions { colour, seed, ..USUAL }));
                 if !finding.causes.is_empty() {
-                    alarms.push(format!("{} colour {colour} seed {seed}: {}", plant.name, names(&finding)));
+                    alarms.push(format!(
+                        "{} colour {colour} seed {seed}: {}",
+                        plant.name,
+                        names(&finding)
+                    ));
                 }
             }
         }
@@ -121,7 +148,12 @@ fn exact_twins_are_both_named() {
     let (_, record) = MSD.guilty(&[&all[5]], Conditions { seed: 4, ..USUAL });
     let finding = MSD.diagnose(&record);
     let first = finding.causes.first().expect("a cause");
-    let twin = Hidden { effect: "coulomb_friction", into: "joint_1", of: Some("v_1"), table: |_| String::new() };
+    let twin = Hidden {
+        effect: "coulomb_friction",
+        into: "joint_1",
+        of: Some("v_1"),
+        table: |_| String::new(),
+    };
     assert!(all[5].is_named(first) && twin.is_named(first), "{}", names(&finding));
 }
 

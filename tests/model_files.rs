@@ -18,6 +18,9 @@ fn tries() {
         "[model.duffing]\nmass = 1.0\ndamping = 0.5\nstiffness=1\n\n[[effects]]\ninto = \"force\"\nof = \"v\"\neffect.cubic = { coefficient = 1 }\neffect.drag={coefficient=1}",
         "[model.equations]\nstates = [{ name = 'x', derivative = 'x + sine(y)' }]\noutputs=[{name='y', value='x'}]",
     ] {
-        match parse(text, "m.toml", Format::Toml) { Ok(s) => println!("OK {s:?}"), Err(e) => println!("{}\n", e.pretty()) }
+        match parse(text, "m.toml", Format::Toml) {
+            Ok(s) => println!("OK {s:?}"),
+            Err(e) => println!("{}\n", e.pretty()),
+        }
     }
 }

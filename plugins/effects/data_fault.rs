@@ -42,10 +42,40 @@ macro_rules! fault {
 }
 
 fault!(Outliers, "outliers", "single samples far off", "Outliers", "Share of all samples.");
-fault!(Dropout, "dropout", "samples that fell to a fixed value", "A dropout", "The value they fell to.");
-fault!(Clipping, "clipping", "values cut off at a limit of the instrument", "Clipped values", "The limit.");
+fault!(
+    Dropout,
+    "dropout",
+    "samples that fell to a fixed value",
+    "A dropout",
+    "The value they fell to."
+);
+fault!(
+    Clipping,
+    "clipping",
+    "values cut off at a limit of the instrument",
+    "Clipped values",
+    "The limit."
+);
 fault!(Stuck, "stuck", "a reading that stands still", "A stuck reading", "The value it stands at.");
-fault!(Quantisation, "quantisation", "coarse steps of the converter", "Coarse quantisation", "Step of the converter.");
-fault!(TimeShift, "time_shift", "one column recorded early or late", "A shifted column", "Shift in s, positive where the column is late.");
+fault!(
+    Quantisation,
+    "quantisation",
+    "coarse steps of the converter",
+    "Coarse quantisation",
+    "Step of the converter."
+);
+fault!(
+    TimeShift,
+    "time_shift",
+    "one column recorded early or late",
+    "A shifted column",
+    "Shift in s, positive where the column is late."
+);
 fault!(SwappedSign, "swapped_sign", "a column of the wrong sign", "A swapped sign", "Not used.");
-fault!(WrongSamplingTime, "sampling_time", "another sampling time than stated", "A wrong sampling time", "The sampling time that fits, in s.");
+fault!(
+    WrongSamplingTime,
+    "sampling_time",
+    "another sampling time than stated",
+    "A wrong sampling time",
+    "The sampling time that fits, in s."
+);

@@ -42,8 +42,12 @@ impl Effect for DeadZone {
         let card = Effect::card(self);
         let at = if view.own_path { [0.05, 0.15, 0.4] } else { [0.2, 0.5, 0.8] };
         let top = view.magnitude(1.0);
-        let mut search = Search::plain(&card)
-            .over(&card, "width", &at.map(|q| view.magnitude(q)), (0.02 * view.magnitude(0.5), top));
+        let mut search = Search::plain(&card).over(
+            &card,
+            "width",
+            &at.map(|q| view.magnitude(q)),
+            (0.02 * view.magnitude(0.5), top),
+        );
         search.thresholds = true;
         search
     }

@@ -47,9 +47,8 @@ impl Effect for Hinge {
     fn search(&self, view: &View) -> Search {
         let card = Effect::card(self);
         let room = 0.2 * view.range();
-        let grid: Vec<f64> = [0.2, 0.5, 0.8, 0.95, 0.05, 0.2, 0.5, 0.8]
-            .map(|q| view.quantile(q))
-            .to_vec();
+        let grid: Vec<f64> =
+            [0.2, 0.5, 0.8, 0.95, 0.05, 0.2, 0.5, 0.8].map(|q| view.quantile(q)).to_vec();
         let range = (view.min() - room, view.max() + room);
         let mut search = Search::plain(&card).over(&card, "start", &grid, range);
         for (i, start) in search.starts.iter_mut().enumerate() {

@@ -49,8 +49,12 @@ impl Effect for StribeckFriction {
     fn search(&self, view: &View) -> Search {
         let card = Effect::card(self);
         let rms = view.rms;
-        let mut search =
-            Search::plain(&card).over(&card, "speed", &[0.2 * rms, 0.6 * rms], (0.02 * rms, 3.0 * rms));
+        let mut search = Search::plain(&card).over(
+            &card,
+            "speed",
+            &[0.2 * rms, 0.6 * rms],
+            (0.02 * rms, 3.0 * rms),
+        );
         for start in &mut search.starts {
             start[3] = 0.05 * rms;
         }

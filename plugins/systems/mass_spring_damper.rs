@@ -130,7 +130,8 @@ impl Physics for MassSpringDamper {
             signals = signals.input(&numbered("u", i, self.driven.len()), "N");
         }
         for i in 1..=n {
-            signals = signals.state(&format!("p_{i}"), "m", 0.0).state(&format!("v_{i}"), "m/s", 0.0);
+            signals =
+                signals.state(&format!("p_{i}"), "m", 0.0).state(&format!("v_{i}"), "m/s", 0.0);
         }
         let measured = self.measured();
         for i in 0..measured.len() {
@@ -157,14 +158,18 @@ impl Physics for MassSpringDamper {
             signals = signals.channel(&format!("joint_{i}"), "N");
         }
         for i in 1..=n {
-            signals = signals
-                .coordinate(&format!("p_{i}"), "m", "position")
-                .coordinate(&format!("v_{i}"), "m/s", "velocity");
+            signals = signals.coordinate(&format!("p_{i}"), "m", "position").coordinate(
+                &format!("v_{i}"),
+                "m/s",
+                "velocity",
+            );
         }
         for i in 2..=n {
-            signals = signals
-                .coordinate(&format!("stretch_{i}"), "m", "position")
-                .coordinate(&format!("stretch_rate_{i}"), "m/s", "velocity");
+            signals = signals.coordinate(&format!("stretch_{i}"), "m", "position").coordinate(
+                &format!("stretch_rate_{i}"),
+                "m/s",
+                "velocity",
+            );
         }
         signals.fixing(&self.fixed).deriving(n)
     }
@@ -209,7 +214,8 @@ impl Physics for MassSpringDamper {
             ("d", "cubic_damping"),
         ];
         let (letter, number) = parameter.split_at(1);
-        let list = lists.iter().find(|(known, _)| *known == letter).map_or(letter, |(_, list)| list);
+        let list =
+            lists.iter().find(|(known, _)| *known == letter).map_or(letter, |(_, list)| list);
         format!("{list}.{}", number.parse::<usize>().map_or(0, |n| n.saturating_sub(1)))
     }
 

@@ -47,19 +47,27 @@ pub enum Command {
     #[command(after_help = "Example:\n  lacuna demo --out lacuna-out")]
     Demo(Demo),
     /// Shows what a model gets wrong on a record, names the cause and measures the gain
-    #[command(after_help = "Example:\n  lacuna diagnose --model press.toml --data est.csv --test test.csv\n\n\
+    #[command(
+        after_help = "Example:\n  lacuna diagnose --model press.toml --data est.csv --test test.csv\n\n\
         Writes report.html, extended.toml and diagnosis.json into --out. The records are split by\n\
         time: 70 % fit, 30 % choose; the test record is touched once, for scoring. One Ctrl-C stops\n\
-        with what is known.")]
+        with what is known."
+    )]
     Diagnose(Diagnose),
     /// Runs a model along the inputs of a record
-    #[command(after_help = "Example:\n  lacuna simulate --model press.toml --data test.csv --out simulated.csv")]
+    #[command(
+        after_help = "Example:\n  lacuna simulate --model press.toml --data test.csv --out simulated.csv"
+    )]
     Simulate(Simulate),
     /// Fits the free parameters of a model to records
-    #[command(after_help = "Example:\n  lacuna estimate --model press.toml --data est.csv --out fitted.toml")]
+    #[command(
+        after_help = "Example:\n  lacuna estimate --model press.toml --data est.csv --out fitted.toml"
+    )]
     Estimate(Estimate),
     /// Says whether data reject a model: exit status 0 if they do not, 3 if they do
-    #[command(after_help = "Example:\n  lacuna check --model press.toml --data today.csv --level 0.01")]
+    #[command(
+        after_help = "Example:\n  lacuna check --model press.toml --data today.csv --level 0.01"
+    )]
     Check(Check),
     /// Lists the registered models
     #[command(after_help = "Example:\n  lacuna models --json")]
@@ -68,7 +76,9 @@ pub enum Command {
     #[command(after_help = "Example:\n  lacuna effects")]
     Effects,
     /// Prints completions for a shell
-    #[command(after_help = "Example:\n  lacuna completions bash > ~/.local/share/bash-completion/completions/lacuna")]
+    #[command(
+        after_help = "Example:\n  lacuna completions bash > ~/.local/share/bash-completion/completions/lacuna"
+    )]
     Completions {
         /// bash, zsh, fish, elvish or powershell
         shell: clap_complete::Shell,

@@ -77,7 +77,8 @@ fn tell(finding: &Finding, units: &[(String, String)], out: &Path, look: &Look) 
         }
     }
     for (name, before) in &finding.before.test {
-        let Some(after) = finding.after.test.get(name).filter(|_| !finding.causes.is_empty()) else {
+        let Some(after) = finding.after.test.get(name).filter(|_| !finding.causes.is_empty())
+        else {
             continue;
         };
         let unit = units.iter().find(|(n, _)| n == name).map_or("", |(_, unit)| unit);

@@ -26,7 +26,13 @@ pub struct Failure {
 impl Failure {
     /// The work failed.
     pub fn work(message: String) -> Self {
-        Self { kind: Kind::Work, pretty: message.clone(), message, place: Place::default(), hint: None }
+        Self {
+            kind: Kind::Work,
+            pretty: message.clone(),
+            message,
+            place: Place::default(),
+            hint: None,
+        }
     }
 
     fn told(error: &dyn Explain) -> Self {
@@ -66,7 +72,12 @@ pub fn call(error: &clap::Error) -> ExitCode {
         let message = lines.next().unwrap_or_default().trim_start_matches("error: ").to_string();
         let details: Vec<&str> = lines.take_while(|line| !line.starts_with("Usage")).collect();
         let message = [&[message.as_str()], &details[..]].concat().join(" ");
-        document(Kind::Call, &message, &Place::default(), Some("`lacuna COMMAND --help` shows an example"));
+        document(
+            Kind::Call,
+            &message,
+            &Place::default(),
+            Some("`lacuna COMMAND --help` shows an example"),
+        );
     } else {
         // a message that cannot be shown is no reason for another one
         let _ = error.print();

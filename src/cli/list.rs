@@ -52,7 +52,9 @@ pub fn models(look: &Look) -> Result<u8, Failure> {
         text += &format!("{:<20} {}\n", card.name, card.summary);
         if let Some(s) = signals {
             let words = |signals: &[Signal]| -> String {
-                let unit = |s: &Signal| if s.unit.is_empty() { String::new() } else { format!(" [{}]", s.unit) };
+                let unit = |s: &Signal| {
+                    if s.unit.is_empty() { String::new() } else { format!(" [{}]", s.unit) }
+                };
                 signals.iter().map(|s| s.name.clone() + &unit(s)).collect::<Vec<_>>().join(", ")
             };
             let parameters: Vec<Signal> =
@@ -84,11 +86,8 @@ pub fn effects(look: &Look) -> Result<u8, Failure> {
             Needs::AngleOrTime => "an angle, or time",
             Needs::Time => "time",
         };
-        let knobs: Vec<Value> = own
-            .knobs
-            .iter()
-            .map(|k| json!({ "name": k.name, "unit": unit(k) }))
-            .collect();
+        let knobs: Vec<Value> =
+            own.knobs.iter().map(|k| json!({ "name": k.name, "unit": unit(k) })).collect();
         all.push(json!({
             "name": card.name, "summary": card.summary, "parameters": knobs, "of": needs,
         }));

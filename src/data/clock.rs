@@ -27,9 +27,7 @@ pub(super) fn read(table: &Table, remarks: &mut Vec<Remark>) -> Result<Option<Cl
     match relate(&column.unit, "s") {
         Relation::Same => {}
         Relation::Convert(conversion) => {
-            times
-                .iter_mut()
-                .for_each(|time| *time = conversion.apply(*time));
+            times.iter_mut().for_each(|time| *time = conversion.apply(*time));
             remarks.push(Remark::Converted {
                 column: column.name.clone(),
                 from: column.unit.clone(),
@@ -51,20 +49,13 @@ pub(super) fn read(table: &Table, remarks: &mut Vec<Remark>) -> Result<Option<Cl
     }
     if let Some(row) = times.windows(2).position(|pair| pair[1] <= pair[0]) {
         let (previous, found) = (times[row], times[row + 1]);
-        return Err(DataError::TimeOrder {
-            at: place(row + 1),
-            previous,
-            found,
-        });
+        return Err(DataError::TimeOrder { at: place(row + 1), previous, found });
     }
     let (Some(&first), Some(&last)) = (times.first(), times.last()) else {
         return Ok(None);
     };
     if times.len() < 2 {
-        return Ok(Some(Clock {
-            start: first,
-            step: None,
-        }));
+        return Ok(Some(Clock { start: first, step: None }));
     }
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = steps.len() / 2;
@@ -90,10 +81,7 @@ pub(super) fn read(table: &Table, remarks: &mut Vec<Remark>) -> Result<Option<Cl
     }
     let tolerance =
         f64::EPSILON * (8.0 * first.abs().max(last.abs()) / (times.len() - 1) as f64 + 4.0 * mean);
-    Ok(Some(Clock {
-        start: first,
-        step: Some(tidy(mean, tolerance)),
-    }))
+    Ok(Some(Clock { start: first, step: Some(tidy(mean, tolerance)) }))
 }
 
 /// The number with the fewest digits, or the fraction `1/rate`, within `tolerance`: what
@@ -106,17 +94,12 @@ fn tidy(step: f64, tolerance: f64) -> f64 {
         digits(step, 14),
         digits(step, 15),
     ];
-    candidates
-        .into_iter()
-        .find(|c| (c - step).abs() <= tolerance)
-        .unwrap_or(step)
+    candidates.into_iter().find(|c| (c - step).abs() <= tolerance).unwrap_or(step)
 }
 
 /// The number rounded to so many significant digits.
 pub(super) fn digits(value: f64, count: usize) -> f64 {
-    format!("{value:.*e}", count.saturating_sub(1))
-        .parse()
-        .unwrap_or(value)
+    format!("{value:.*e}", count.saturating_sub(1)).parse().unwrap_or(value)
 }
 
 #[cfg(test)]
@@ -132,24 +115,10 @@ mod tests {
 
     #[test]
     fn a_step_comes_back_to_the_last_bit() {
-        for step in [
-            0.1,
-            0.02,
-            1.6384e-3,
-            1.0 / 750.0,
-            1.0 / 51_200.0,
-            5e-7,
-            0.123_456_789_012_3,
-        ] {
+        for step in [0.1, 0.02, 1.6384e-3, 1.0 / 750.0, 1.0 / 51_200.0, 5e-7, 0.123_456_789_012_3] {
             for start in [0.0, 3.0 * step, -1.5] {
                 let times = (0..5000).map(|k| start + k as f64 * step);
-                assert_eq!(
-                    clock("time [s]", times).unwrap(),
-                    Clock {
-                        start,
-                        step: Some(step)
-                    }
-                );
+                assert_eq!(clock("time [s]", times).unwrap(), Clock { start, step: Some(step) });
             }
         }
     }
@@ -160,42 +129,25 @@ mod tests {
         let step = clock("time", unix).unwrap().step.unwrap();
         assert!((step - 0.001).abs() < 1e-8);
         let milliseconds = clock("time [ms]", (1..9).map(|k| 20.0 * k as f64)).unwrap();
-        assert_eq!(
-            milliseconds,
-            Clock {
-                start: 0.02,
-                step: Some(0.02)
-            }
-        );
+        assert_eq!(milliseconds, Clock { start: 0.02, step: Some(0.02) });
     }
 
     #[test]
     fn one_row_has_no_step() {
-        assert_eq!(
-            clock("time", [2.0].into_iter()).unwrap(),
-            Clock {
-                start: 2.0,
-                step: None
-            }
-        );
+        assert_eq!(clock("time", [2.0].into_iter()).unwrap(), Clock { start: 2.0, step: None });
     }
 
     #[test]
     fn what_is_irregular_is_told_apart() {
         let gap = [0.0, 0.1, 0.2, 0.5, 0.6, 0.7, 0.8];
-        let Err(DataError::TimeIrregular {
-            at, missing_rows, ..
-        }) = clock("time", gap.into_iter())
+        let Err(DataError::TimeIrregular { at, missing_rows, .. }) = clock("time", gap.into_iter())
         else {
             panic!()
         };
         assert_eq!((at.line, missing_rows), (Some(5), 2));
 
         let rounded = (0..100).map(|k| (k as f64 / 60.0 * 1e3).round() / 1e3);
-        let Err(DataError::TimeIrregular {
-            rounded_from: Some(step),
-            ..
-        }) = clock("time", rounded)
+        let Err(DataError::TimeIrregular { rounded_from: Some(step), .. }) = clock("time", rounded)
         else {
             panic!()
         };

@@ -17,10 +17,7 @@ use header::{names, not_utf8};
 use std::io::{self, Read};
 
 pub(super) fn unreadable(source: &str, error: io::Error) -> DataError {
-    DataError::Open {
-        at: place(source, None, None),
-        source: error,
-    }
+    DataError::Open { at: place(source, None, None), source: error }
 }
 
 /// Unpacks what begins as gzip does and hands everything else through.
@@ -31,10 +28,7 @@ pub(super) fn unpack(bytes: Vec<u8>, source: &str) -> Result<Vec<u8>, DataError>
     let mut unpacked = Vec::with_capacity(4 * bytes.len());
     match flate2::read::MultiGzDecoder::new(&bytes[..]).read_to_end(&mut unpacked) {
         Ok(_) => Ok(unpacked),
-        Err(error) => Err(DataError::Unpack {
-            at: place(source, None, None),
-            source: error,
-        }),
+        Err(error) => Err(DataError::Unpack { at: place(source, None, None), source: error }),
     }
 }
 
@@ -47,9 +41,7 @@ pub(super) fn parse(bytes: &[u8], source: &str) -> Result<Table, DataError> {
     let (header_line, header) = loop {
         match lines.next() {
             None => {
-                return Err(DataError::Empty {
-                    at: place(source, None, None),
-                });
+                return Err(DataError::Empty { at: place(source, None, None) });
             }
             Some((_, line)) if line.trim().is_empty() => {}
             Some((number, line)) if is_comment(line) => comment = Some(number),
@@ -148,11 +140,7 @@ impl Sheet {
     ) -> Result<bool, DataError> {
         let field = field.trim();
         let Some(column) = self.table.columns.get_mut(k) else {
-            return if field.is_empty() {
-                Ok(false)
-            } else {
-                Err(self.overfull(number, line))
-            };
+            return if field.is_empty() { Ok(false) } else { Err(self.overfull(number, line)) };
         };
         match fields::number(field) {
             Ok(value) => {
@@ -163,11 +151,7 @@ impl Sheet {
                 column.values.push(f64::NAN);
                 if column.fault.is_none() {
                     let found = shortened(field);
-                    column.fault = Some(CellFault {
-                        line: number,
-                        found,
-                        problem,
-                    });
+                    column.fault = Some(CellFault { line: number, found, problem });
                 }
                 Ok(true)
             }
@@ -181,22 +165,13 @@ impl Sheet {
         let digits = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
         let whole = |text: &str| digits(text.strip_prefix(['-', '+']).unwrap_or(text));
         let pairs = fields.len() == 2 * columns.len()
-            && fields
-                .chunks(2)
-                .all(|pair| whole(pair[0]) && digits(pair[1]));
+            && fields.chunks(2).all(|pair| whole(pair[0]) && digits(pair[1]));
         if pairs && self.separator == ',' {
             let at = self.table.place(&columns[0], line_number);
-            return DataError::DecimalComma {
-                at,
-                found: fields[..2].join(","),
-            };
+            return DataError::DecimalComma { at, found: fields[..2].join(",") };
         }
         DataError::TooManyFields {
-            at: place(
-                &self.table.source,
-                Some(line_number),
-                Some(columns.len() + 1),
-            ),
+            at: place(&self.table.source, Some(line_number), Some(columns.len() + 1)),
             found: fields.len(),
             expected: columns.len(),
         }
@@ -210,9 +185,7 @@ impl Sheet {
         }
         if trailing.count > 0 {
             let Tally { count, first_line } = trailing;
-            table
-                .remarks
-                .push(Remark::TrailingSeparator { count, first_line });
+            table.remarks.push(Remark::TrailingSeparator { count, first_line });
         }
         if self.short.count > 0 {
             let Tally { count, first_line } = self.short;
@@ -231,12 +204,7 @@ impl Sheet {
 }
 
 fn place(source: &str, line: Option<usize>, column: Option<usize>) -> Box<Place> {
-    Box::new(Place {
-        file: Some(source.to_owned()),
-        line,
-        column,
-        key: None,
-    })
+    Box::new(Place { file: Some(source.to_owned()), line, column, key: None })
 }
 
 /// At most 40 characters of a text.

@@ -262,20 +262,15 @@ pub enum DataError {
 
 /// `a, b, c`; a column without a name is shown as such.
 fn list(names: &[String]) -> String {
-    let shown: Vec<&str> = names
-        .iter()
-        .map(|name| if name.is_empty() { "(no name)" } else { name })
-        .collect();
+    let shown: Vec<&str> =
+        names.iter().map(|name| if name.is_empty() { "(no name)" } else { name }).collect();
     shown.join(", ")
 }
 
 impl DataError {
     /// A setting `key` whose `value` breaks the `rule`.
     pub(crate) fn setting(key: &str, value: f64, rule: &'static str) -> Self {
-        let at = Box::new(Place {
-            key: Some(key.into()),
-            ..Place::default()
-        });
+        let at = Box::new(Place { key: Some(key.into()), ..Place::default() });
         Self::Setting { at, value, rule }
     }
 }

@@ -123,10 +123,8 @@ pub(super) fn short(value: f64) -> String {
 
 fn text_hint(found: &str) -> String {
     let lower = found.to_lowercase();
-    if [
-        "na", "n/a", "#n/a", "null", "none", "missing", "-", "--", "---", "?", ".",
-    ]
-    .contains(&&*lower)
+    if ["na", "n/a", "#n/a", "null", "none", "missing", "-", "--", "---", "?", "."]
+        .contains(&&*lower)
     {
         "leave the cell empty, or write NaN, for a missing value".into()
     } else if found.contains([';', '\t', ' ']) {
@@ -138,8 +136,7 @@ fn text_hint(found: &str) -> String {
 
 fn column_hint(wanted: &str, known: &[String]) -> String {
     let bracketed = |name: &&String| {
-        name.strip_prefix(wanted)
-            .is_some_and(|rest| rest.trim_start().starts_with('('))
+        name.strip_prefix(wanted).is_some_and(|rest| rest.trim_start().starts_with('('))
     };
     if let Some(name) = known.iter().find(bracketed) {
         return format!("write the unit of `{name}` in square brackets, `{wanted} [unit]`");

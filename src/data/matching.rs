@@ -54,27 +54,18 @@ impl Table {
         let mut remarks = Vec::new();
         let inputs = self.columns_for(&want.inputs, &want.outputs, 'u');
         let outputs = self.columns_for(&want.outputs, &want.inputs, 'y');
-        for (required, group, wanted) in [
-            (true, &inputs, &want.inputs),
-            (want.outputs_required, &outputs, &want.outputs),
-        ] {
+        for (required, group, wanted) in
+            [(true, &inputs, &want.inputs), (want.outputs_required, &outputs, &want.outputs)]
+        {
             let absent = group.iter().position(Option::is_none).filter(|_| required);
             if let Some(k) = absent {
                 return Err(self.no_such_column(&wanted[k].0));
             }
         }
         let time = self.find("time");
-        let used: Vec<&Column> = inputs
-            .iter()
-            .chain(&outputs)
-            .flatten()
-            .copied()
-            .chain(time)
-            .collect();
-        let extra = self
-            .columns
-            .iter()
-            .filter(|c| used.iter().all(|u| u.number != c.number));
+        let used: Vec<&Column> =
+            inputs.iter().chain(&outputs).flatten().copied().chain(time).collect();
+        let extra = self.columns.iter().filter(|c| used.iter().all(|u| u.number != c.number));
         let names: Vec<String> = extra.map(|column| column.name.clone()).collect();
         if !names.is_empty() {
             remarks.push(Remark::ExtraColumns { names });
@@ -114,15 +105,11 @@ impl Table {
             return named;
         }
         // a column that the other group asks for by name is not free to stand for another
-        let free = |name: &str| {
-            self.find(name)
-                .filter(|_| others.iter().all(|(other, _)| other != name))
-        };
+        let free =
+            |name: &str| self.find(name).filter(|_| others.iter().all(|(other, _)| other != name));
         let lone = |k: usize| (wanted.len() == 1 && k == 0).then(|| free(&letter.to_string()));
         let numbered = |k: usize| free(&format!("{letter}{}", k + 1));
-        (0..wanted.len())
-            .map(|k| lone(k).flatten().or_else(|| numbered(k)))
-            .collect()
+        (0..wanted.len()).map(|k| lone(k).flatten().or_else(|| numbered(k))).collect()
     }
 
     /// One column as a signal, in the unit and under the name wanted.
@@ -133,18 +120,13 @@ impl Table {
         remarks: &mut Vec<Remark>,
     ) -> Result<Signal, DataError> {
         if column.name != *name {
-            remarks.push(Remark::ByPosition {
-                column: column.name.clone(),
-                signal: name.clone(),
-            });
+            remarks.push(Remark::ByPosition { column: column.name.clone(), signal: name.clone() });
         }
         let mut values = column.values.clone();
         match relate(&column.unit, unit) {
             Relation::Same => {}
             Relation::Convert(conversion) => {
-                values
-                    .iter_mut()
-                    .for_each(|value| *value = conversion.apply(*value));
+                values.iter_mut().for_each(|value| *value = conversion.apply(*value));
                 remarks.push(Remark::Converted {
                     column: column.name.clone(),
                     from: column.unit.clone(),
@@ -154,10 +136,7 @@ impl Table {
                 if let Some(row) = values.iter().position(|value| value.is_infinite()) {
                     let line = self.line(row).unwrap_or(self.header_line);
                     let found = column.values[row].to_string();
-                    return Err(DataError::Infinite {
-                        at: self.place(column, line),
-                        found,
-                    });
+                    return Err(DataError::Infinite { at: self.place(column, line), found });
                 }
             }
             Relation::Clash { factor } => {
@@ -169,16 +148,8 @@ impl Table {
                 });
             }
         }
-        let unit = if unit.trim().is_empty() {
-            &column.unit
-        } else {
-            unit
-        };
-        Ok(Signal {
-            name: name.clone(),
-            unit: unit.clone(),
-            values,
-        })
+        let unit = if unit.trim().is_empty() { &column.unit } else { unit };
+        Ok(Signal { name: name.clone(), unit: unit.clone(), values })
     }
 
     /// Reports missing values, and refuses what leaves too little.
@@ -189,69 +160,36 @@ impl Table {
         remarks: &mut Vec<Remark>,
     ) -> Result<(), DataError> {
         for (k, signal) in record.signals().enumerate() {
-            let rows = signal
-                .values
-                .iter()
-                .zip(&self.lines)
-                .filter(|(value, _)| value.is_nan());
+            let rows = signal.values.iter().zip(&self.lines).filter(|(value, _)| value.is_nan());
             let lines: Vec<usize> = rows.map(|(_, line)| *line).take(5).collect();
             let (signal, count) = (signal.name.clone(), signal.missing());
             if count > 0 {
                 remarks.push(if k < record.inputs.len() {
-                    Remark::MissingInput {
-                        signal,
-                        count,
-                        lines,
-                    }
+                    Remark::MissingInput { signal, count, lines }
                 } else {
-                    Remark::MissingOutput {
-                        signal,
-                        count,
-                        lines,
-                    }
+                    Remark::MissingOutput { signal, count, lines }
                 });
             }
         }
         let samples: usize = record.segments.iter().map(|segment| segment.len()).sum();
         let (count, rows) = (record.segments.len(), record.len());
         if samples < rows && count > 0 {
-            remarks.push(Remark::Segments {
-                count,
-                samples,
-                rows,
-            });
+            remarks.push(Remark::Segments { count, samples, rows });
         }
         let outputs = || want.outputs.iter().map(|(name, _)| name.clone());
-        let names: Vec<String> = outputs()
-            .filter(|name| record.signal(name).is_none())
-            .collect();
+        let names: Vec<String> = outputs().filter(|name| record.signal(name).is_none()).collect();
         if !names.is_empty() {
             remarks.push(Remark::AbsentOutputs { names });
         }
         if count == 0 && rows > 0 {
-            let inputs = record
-                .inputs
-                .iter()
-                .map(|input| input.name.clone())
-                .collect();
-            return Err(DataError::NoCompleteRow {
-                at: self.whole(),
-                inputs,
-            });
+            let inputs = record.inputs.iter().map(|input| input.name.clone()).collect();
+            return Err(DataError::NoCompleteRow { at: self.whole(), inputs });
         }
         let empty = |signal: &Signal| signal.missing() == signal.values.len();
         if want.outputs_required && !record.outputs.is_empty() && record.outputs.iter().all(empty) {
-            return Err(DataError::NoOutput {
-                at: self.whole(),
-                outputs: outputs().collect(),
-            });
+            return Err(DataError::NoOutput { at: self.whole(), outputs: outputs().collect() });
         }
-        let longest = record
-            .segments
-            .iter()
-            .map(|segment| segment.len())
-            .max()
-            .unwrap_or(0);
+        let longest = record.segments.iter().map(|segment| segment.len()).max().unwrap_or(0);
         if longest < want.minimum {
             return Err(DataError::TooFew {
                 at: self.whole(),
@@ -263,9 +201,6 @@ impl Table {
     }
 
     pub(super) fn whole(&self) -> Box<Place> {
-        Box::new(Place {
-            file: Some(self.source.clone()),
-            ..Place::default()
-        })
+        Box::new(Place { file: Some(self.source.clone()), ..Place::default() })
     }
 }

@@ -39,11 +39,7 @@ pub fn white(n: usize, std: f64, seed: u64) -> Result<Vec<f64>, DataError> {
 /// A ratio that is not finite, or a clean signal that holds an infinite value.
 pub fn at_snr(clean: &[f64], snr_db: f64, seed: u64) -> Result<Vec<f64>, DataError> {
     if !snr_db.is_finite() {
-        return Err(DataError::setting(
-            "snr_db",
-            snr_db,
-            "a finite number of dB",
-        ));
+        return Err(DataError::setting("snr_db", snr_db, "a finite number of dB"));
     }
     let present = || clean.iter().copied().filter(|value| !value.is_nan());
     let count = present().count().max(1) as f64;
@@ -62,11 +58,7 @@ pub fn at_snr(clean: &[f64], snr_db: f64, seed: u64) -> Result<Vec<f64>, DataErr
 /// finite.
 pub fn ar1(n: usize, pole: f64, std: f64, seed: u64) -> Result<Vec<f64>, DataError> {
     if pole.is_nan() || pole.abs() >= 1.0 {
-        return Err(DataError::setting(
-            "pole",
-            pole,
-            "between -1 and 1, both left out",
-        ));
+        return Err(DataError::setting("pole", pole, "between -1 and 1, both left out"));
     }
     let mut random = Random::new(seed);
     let (n, std) = (samples("samples", n)?, deviation(std)?);

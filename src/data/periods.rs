@@ -37,20 +37,14 @@ impl Record {
             return None;
         }
         // a constant input repeats with any period and does not decide
-        let moving: Vec<Moving<'_>> = self
-            .inputs
-            .iter()
-            .filter_map(|input| Moving::of(&input.values[..n]))
-            .collect();
+        let moving: Vec<Moving<'_>> =
+            self.inputs.iter().filter_map(|input| Moving::of(&input.values[..n])).collect();
         let (first, others) = moving.split_first()?;
         let candidates = first.candidates();
         let samples = candidates.into_iter().find(|&period| {
             first.repeats(period) && others.iter().all(|input| input.repeats(period))
         })?;
-        Some(Periods {
-            samples,
-            count: n / samples,
-        })
+        Some(Periods { samples, count: n / samples })
     }
 }
 
@@ -65,21 +59,13 @@ impl<'a> Moving<'a> {
     fn of(values: &'a [f64]) -> Option<Self> {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
-        let rms = (values
-            .iter()
-            .map(|value| (value - mean).powi(2))
-            .sum::<f64>()
-            / n)
-            .sqrt();
+        let rms = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / n).sqrt();
         (rms > 1e-12 * mean.abs()).then_some(Self { values, mean, rms })
     }
 
     fn repeats(&self, period: usize) -> bool {
         let tolerance = TOLERANCE * self.rms;
-        self.values
-            .iter()
-            .zip(&self.values[period..])
-            .all(|(a, b)| (a - b).abs() <= tolerance)
+        self.values.iter().zip(&self.values[period..]).all(|(a, b)| (a - b).abs() <= tolerance)
     }
 
     /// Periods that the mean square of `v[k + P] - v[k]` does not rule out, shortest
@@ -89,10 +75,8 @@ impl<'a> Moving<'a> {
         let n = self.values.len();
         let length = (2 * n).next_power_of_two();
         let mut planner = RealFftPlanner::<f64>::new();
-        let (forward, inverse) = (
-            planner.plan_fft_forward(length),
-            planner.plan_fft_inverse(length),
-        );
+        let (forward, inverse) =
+            (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
         let mut padded = forward.make_input_vec();
         for (slot, value) in padded.iter_mut().zip(self.values) {
             *slot = (value - self.mean) / self.rms;
@@ -116,9 +100,7 @@ impl<'a> Moving<'a> {
                 - 2.0 * correlation[period] / length as f64
         };
         // rounding of the transform is some 1e-15 of the total, which is n
-        (1..=n / 2)
-            .filter(|&period| difference(period) <= 1e-10 * n as f64)
-            .collect()
+        (1..=n / 2).filter(|&period| difference(period) <= 1e-10 * n as f64).collect()
     }
 }
 
@@ -137,13 +119,7 @@ mod tests {
     #[test]
     fn repeated_noise_has_its_period() {
         let found = period((0..1000).map(|k| noise(k % 237)).collect());
-        assert_eq!(
-            found,
-            Some(Periods {
-                samples: 237,
-                count: 4
-            })
-        );
+        assert_eq!(found, Some(Periods { samples: 237, count: 4 }));
     }
 
     #[test]
@@ -167,19 +143,9 @@ mod tests {
         let u1: Vec<f64> = (0..60).map(|k| noise(k % 10)).collect();
         let u2: Vec<f64> = (0..60).map(|k| noise(k % 15)).collect();
         let constant = vec![4.0; 60];
-        let both = Record::new(1.0)
-            .input("u1", u1)
-            .unwrap()
-            .input("u2", u2)
-            .unwrap();
+        let both = Record::new(1.0).input("u1", u1).unwrap().input("u2", u2).unwrap();
         let all = both.input("u3", constant).unwrap();
-        assert_eq!(
-            all.periods(),
-            Some(Periods {
-                samples: 30,
-                count: 2
-            })
-        );
+        assert_eq!(all.periods(), Some(Periods { samples: 30, count: 2 }));
     }
 
     #[test]

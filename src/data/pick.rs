@@ -59,16 +59,13 @@ impl Table {
             let number = |name: &str| -> Option<u32> {
                 match name.strip_prefix(letter)? {
                     "" => Some(0),
-                    digits => digits
-                        .bytes()
-                        .all(|b| b.is_ascii_digit())
-                        .then(|| digits.parse().ok())?,
+                    digits => {
+                        digits.bytes().all(|b| b.is_ascii_digit()).then(|| digits.parse().ok())?
+                    }
                 }
             };
             let names = self.columns.iter().map(|column| column.name.as_str());
-            let mut found: Vec<_> = names
-                .filter_map(|name| Some((number(name)?, name)))
-                .collect();
+            let mut found: Vec<_> = names.filter_map(|name| Some((number(name)?, name))).collect();
             found.sort_unstable();
             found.into_iter().map(|(_, name)| name).collect::<Vec<_>>()
         };

@@ -23,10 +23,7 @@ pub struct Random {
 impl Random {
     /// The sequence of a seed.
     pub fn new(seed: u64) -> Self {
-        Self {
-            bits: ChaCha8Rng::seed_from_u64(seed),
-            spare: None,
-        }
+        Self { bits: ChaCha8Rng::seed_from_u64(seed), spare: None }
     }
 
     /// Uniform from 0 (included) to 1 (not included).
@@ -82,10 +79,7 @@ mod tests {
         let mut random = Random::new(1);
         let mut counts = [0; 6];
         (0..60_000).for_each(|_| counts[random.below(6) as usize] += 1);
-        assert!(
-            counts.iter().all(|count| (9_600..10_400).contains(count)),
-            "{counts:?}"
-        );
+        assert!(counts.iter().all(|count| (9_600..10_400).contains(count)), "{counts:?}");
         assert_eq!(random.below(0), 0);
     }
 }

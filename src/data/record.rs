@@ -26,9 +26,7 @@ impl Signal {
 
     /// Mean of the values present; NaN where there is none.
     pub fn mean(&self) -> f64 {
-        let (sum, count) = self
-            .present()
-            .fold((0.0, 0), |(s, n), value| (s + value, n + 1));
+        let (sum, count) = self.present().fold((0.0, 0), |(s, n), value| (s + value, n + 1));
         sum / f64::from(count)
     }
 
@@ -146,59 +144,35 @@ impl Record {
     fn signal_for(&self, header: &str, values: Vec<f64>) -> Result<Signal, DataError> {
         if !(self.sampling_time > 0.0 && self.sampling_time.is_finite()) {
             let rule = "a positive number of seconds";
-            return Err(DataError::setting(
-                "sampling_time",
-                self.sampling_time,
-                rule,
-            ));
+            return Err(DataError::setting("sampling_time", self.sampling_time, rule));
         }
         let (name, unit) = unit::header(header)
             .filter(|(name, _)| !name.is_empty() && name != "time")
             .filter(|_| !header.contains(char::is_control))
-            .ok_or_else(|| DataError::Header {
-                at: self.at(header),
-                found: header.to_owned(),
-            })?;
+            .ok_or_else(|| DataError::Header { at: self.at(header), found: header.to_owned() })?;
         if let Some(first) = self.signals().position(|signal| signal.name == name) {
-            return Err(DataError::DuplicateColumn {
-                at: self.at(&name),
-                first: first + 1,
-            });
+            return Err(DataError::DuplicateColumn { at: self.at(&name), first: first + 1 });
         }
         if let Some(expected) = self.signals().next().map(|signal| signal.values.len())
             && expected != values.len()
         {
-            return Err(DataError::Length {
-                at: self.at(&name),
-                found: values.len(),
-                expected,
-            });
+            return Err(DataError::Length { at: self.at(&name), found: values.len(), expected });
         }
         if let Some(k) = values.iter().position(|value| value.is_infinite()) {
             let found = format!("{} at sample {k}", values[k]);
-            return Err(DataError::Infinite {
-                at: self.at(&name),
-                found,
-            });
+            return Err(DataError::Infinite { at: self.at(&name), found });
         }
         Ok(Signal { name, unit, values })
     }
 
     pub(super) fn at(&self, key: &str) -> Box<Place> {
         let file = (!self.source.is_empty()).then(|| self.source.clone());
-        Box::new(Place {
-            file,
-            key: Some(key.to_owned()),
-            ..Place::default()
-        })
+        Box::new(Place { file, key: Some(key.to_owned()), ..Place::default() })
     }
 
     /// Number of samples; 0 without signals.
     pub fn len(&self) -> usize {
-        self.signals()
-            .map(|signal| signal.values.len())
-            .min()
-            .unwrap_or(0)
+        self.signals().map(|signal| signal.values.len()).min().unwrap_or(0)
     }
 
     /// Whether there is no sample.

@@ -97,12 +97,7 @@ impl fmt::Display for Remark {
         match self {
             Self::ExtraColumns { names } => {
                 let shown: Vec<String> = names.iter().map(|name| named(name)).collect();
-                write!(
-                    f,
-                    "{} ignored: {}",
-                    count(names.len(), "extra column"),
-                    shown.join(", ")
-                )
+                write!(f, "{} ignored: {}", count(names.len(), "extra column"), shown.join(", "))
             }
             Self::Converted { column, from, to } => {
                 write!(f, "column `{column}`: {from} converted to {to}")
@@ -110,57 +105,36 @@ impl fmt::Display for Remark {
             Self::ByPosition { column, signal } => {
                 write!(f, "column `{column}` taken for `{signal}` by position")
             }
-            Self::TrailingSeparator {
-                count: n,
-                first_line,
-            } => write!(
+            Self::TrailingSeparator { count: n, first_line } => write!(
                 f,
                 "{} with a separator at the end, which was ignored (first: line {first_line})",
                 count(*n, "line")
             ),
-            Self::ShortRows {
-                count: n,
-                first_line,
-            } => write!(
+            Self::ShortRows { count: n, first_line } => write!(
                 f,
                 "{} without the last columns; the values there count as missing (first: line {first_line})",
                 count(*n, "line")
             ),
-            Self::EmptyRows {
-                count: n,
-                first_line,
-            } => {
+            Self::EmptyRows { count: n, first_line } => {
                 write!(
                     f,
                     "{} without any value at the end left out (from line {first_line})",
                     count(*n, "row")
                 )
             }
-            Self::MissingInput {
-                signal,
-                count: n,
-                lines,
-            } => write!(
+            Self::MissingInput { signal, count: n, lines } => write!(
                 f,
                 "input `{signal}`: {} ({}); the segment ends there",
                 count(*n, "missing value"),
                 first_lines(*n, lines)
             ),
-            Self::MissingOutput {
-                signal,
-                count: n,
-                lines,
-            } => write!(
+            Self::MissingOutput { signal, count: n, lines } => write!(
                 f,
                 "output `{signal}`: {} ({}), without weight",
                 count(*n, "missing value"),
                 first_lines(*n, lines)
             ),
-            Self::Segments {
-                count: n,
-                samples,
-                rows,
-            } => write!(
+            Self::Segments { count: n, samples, rows } => write!(
                 f,
                 "{} with all inputs present, {samples} of {rows} rows; each starts with its own estimated state",
                 count(*n, "segment")
@@ -168,11 +142,7 @@ impl fmt::Display for Remark {
             Self::AbsentOutputs { names } => {
                 write!(f, "no measurement of: {}", names.join(", "))
             }
-            Self::Step {
-                found,
-                stated,
-                taken,
-            } => write!(
+            Self::Step { found, stated, taken } => write!(
                 f,
                 "the record's step is {} s, the model's sampling_time {} s; {} s is taken",
                 short(*found),
@@ -184,11 +154,7 @@ impl fmt::Display for Remark {
 }
 
 fn named(name: &str) -> String {
-    if name.is_empty() {
-        "(no name)".into()
-    } else {
-        name.into()
-    }
+    if name.is_empty() { "(no name)".into() } else { name.into() }
 }
 
 fn count(n: usize, what: &str) -> String {
@@ -198,11 +164,7 @@ fn count(n: usize, what: &str) -> String {
 fn first_lines(count: usize, lines: &[usize]) -> String {
     let shown: Vec<String> = lines.iter().map(usize::to_string).collect();
     let more = if count > lines.len() { ", .." } else { "" };
-    format!(
-        "line{} {}{more}",
-        if count == 1 { "" } else { "s" },
-        shown.join(", ")
-    )
+    format!("line{} {}{more}", if count == 1 { "" } else { "s" }, shown.join(", "))
 }
 
 #[cfg(test)]
@@ -211,27 +173,16 @@ mod tests {
 
     #[test]
     fn remarks_are_one_line_each() {
-        let converted = Remark::Converted {
-            column: "angle".into(),
-            from: "deg".into(),
-            to: "rad".into(),
-        };
-        assert_eq!(
-            converted.to_string(),
-            "column `angle`: deg converted to rad"
-        );
-        let missing = Remark::MissingInput {
-            signal: "force".into(),
-            count: 7,
-            lines: vec![3, 4, 5, 6, 8],
-        };
+        let converted =
+            Remark::Converted { column: "angle".into(), from: "deg".into(), to: "rad".into() };
+        assert_eq!(converted.to_string(), "column `angle`: deg converted to rad");
+        let missing =
+            Remark::MissingInput { signal: "force".into(), count: 7, lines: vec![3, 4, 5, 6, 8] };
         assert_eq!(
             missing.to_string(),
             "input `force`: 7 missing values (lines 3, 4, 5, 6, 8, ..); the segment ends there"
         );
-        let extra = Remark::ExtraColumns {
-            names: vec!["x0".into(), String::new()],
-        };
+        let extra = Remark::ExtraColumns { names: vec!["x0".into(), String::new()] };
         assert_eq!(extra.to_string(), "2 extra columns ignored: x0, (no name)");
     }
 }

@@ -25,10 +25,7 @@ impl Record {
             unit: signal.unit.clone(),
             values: signal.values.get(start..end).unwrap_or_default().to_vec(),
         };
-        let clipped = self
-            .segments
-            .iter()
-            .map(|s| s.start.max(start)..s.end.min(end));
+        let clipped = self.segments.iter().map(|s| s.start.max(start)..s.end.min(end));
         Self {
             source: self.source.clone(),
             sampling_time: self.sampling_time,
@@ -62,11 +59,7 @@ impl Record {
         let sum: f64 = fractions.iter().sum();
         let bad = fractions.iter().position(|f| !(*f > 0.0 && f.is_finite()));
         if let Some(part) = bad.or((sum > 1.0 + 1e-9).then(|| fractions.len() - 1)) {
-            return Err(DataError::Fractions {
-                part: part + 1,
-                value: fractions[part],
-                sum,
-            });
+            return Err(DataError::Fractions { part: part + 1, value: fractions[part], sum });
         }
         let samples = self.len();
         let (mut parts, mut begin, mut share) = (Vec::new(), 0, 0.0);
@@ -74,10 +67,7 @@ impl Record {
             share += fraction;
             let end = ((share * samples as f64).round() as usize).min(samples);
             if end <= begin {
-                return Err(DataError::EmptyPart {
-                    part: k + 1,
-                    samples,
-                });
+                return Err(DataError::EmptyPart { part: k + 1, samples });
             }
             parts.push(self.slice(begin..end));
             begin = end;

@@ -35,11 +35,7 @@ impl Table {
         if let Some(step) = stated
             && !(step > 0.0 && step.is_finite())
         {
-            return Err(DataError::setting(
-                "sampling_time",
-                step,
-                "a positive number of seconds",
-            ));
+            return Err(DataError::setting("sampling_time", step, "a positive number of seconds"));
         }
         match (wanted, found, stated) {
             (Step::Fixed(step), Some(found), _) => {
@@ -48,38 +44,24 @@ impl Table {
                     let line = self.lines.get(1).copied().unwrap_or(self.header_line);
                     let column = self.find("time").map(|column| self.place(column, line));
                     let at = column.unwrap_or_default();
-                    return Err(DataError::StepDiffers {
-                        at,
-                        found,
-                        wanted: step,
-                    });
+                    return Err(DataError::StepDiffers { at, found, wanted: step });
                 }
                 // below this nobody stated the difference: it is the digits of the times
                 if off > 1e-6 {
-                    remarks.push(Remark::Step {
-                        found,
-                        stated: step,
-                        taken: step,
-                    });
+                    remarks.push(Remark::Step { found, stated: step, taken: step });
                 }
                 Ok(step)
             }
             (Step::Free { .. }, Some(found), Some(stated)) => {
                 if (found - stated).abs() > JITTER * stated {
-                    remarks.push(Remark::Step {
-                        found,
-                        stated,
-                        taken: found,
-                    });
+                    remarks.push(Remark::Step { found, stated, taken: found });
                 }
                 Ok(found)
             }
             (_, Some(step), None) | (_, None, Some(step)) => Ok(step),
-            (_, None, None) if self.find("time").is_some() => Err(DataError::TooFew {
-                at: self.whole(),
-                found: self.rows(),
-                needed: 2,
-            }),
+            (_, None, None) if self.find("time").is_some() => {
+                Err(DataError::TooFew { at: self.whole(), found: self.rows(), needed: 2 })
+            }
             (_, None, None) => {
                 let like_time = |column: &&Column| {
                     let name = column.name.to_lowercase();

@@ -108,10 +108,7 @@ impl Table {
 
     /// Names of the columns, in the file's order.
     pub fn names(&self) -> Vec<&str> {
-        self.columns
-            .iter()
-            .map(|column| column.name.as_str())
-            .collect()
+        self.columns.iter().map(|column| column.name.as_str()).collect()
     }
 
     /// Line of the file that a row (from 0) stands in.
@@ -137,9 +134,7 @@ impl Table {
 
     /// The column of that name; columns without a name cannot be asked for.
     pub(super) fn find(&self, name: &str) -> Option<&Column> {
-        self.columns
-            .iter()
-            .find(|column| !name.is_empty() && column.name == name)
+        self.columns.iter().find(|column| !name.is_empty() && column.name == name)
     }
 
     pub(super) fn no_such_column(&self, name: &str) -> DataError {
@@ -151,11 +146,7 @@ impl Table {
                 key: Some(name.to_owned()),
             }),
             wanted: name.to_owned(),
-            known: self
-                .columns
-                .iter()
-                .map(|column| column.name.clone())
-                .collect(),
+            known: self.columns.iter().map(|column| column.name.clone()).collect(),
         }
     }
 

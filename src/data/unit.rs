@@ -92,11 +92,7 @@ pub fn relate(from: &str, to: &str) -> Relation {
         return Relation::Same;
     }
     let (Some(from_product), Some(to_product)) = (Product::parse(from), Product::parse(to)) else {
-        let bare = |text: &str| {
-            text.chars()
-                .filter(|c| !c.is_whitespace())
-                .collect::<String>()
-        };
+        let bare = |text: &str| text.chars().filter(|c| !c.is_whitespace()).collect::<String>();
         return if bare(from) == bare(to) {
             Relation::Same
         } else {
@@ -111,11 +107,8 @@ pub fn relate(from: &str, to: &str) -> Relation {
     for (large, small) in [(numerator, denominator), (denominator, numerator)] {
         let whole = (large / small).round();
         if whole >= 1.0 && (large - whole * small).abs() <= 1e-12 * large {
-            (numerator, denominator) = if numerator >= denominator {
-                (whole, 1.0)
-            } else {
-                (1.0, whole)
-            };
+            (numerator, denominator) =
+                if numerator >= denominator { (whole, 1.0) } else { (1.0, whole) };
             break;
         }
     }
@@ -123,16 +116,11 @@ pub fn relate(from: &str, to: &str) -> Relation {
     if !(scale.is_finite() && numerator.is_finite() && denominator.is_finite()) {
         Relation::Clash { factor: None }
     } else if (scale - 1.0).abs() > 1e-9 {
-        Relation::Clash {
-            factor: Some(scale * numerator / denominator),
-        }
+        Relation::Clash { factor: Some(scale * numerator / denominator) }
     } else if numerator == denominator {
         Relation::Same
     } else {
-        Relation::Convert(Conversion {
-            numerator,
-            denominator,
-        })
+        Relation::Convert(Conversion { numerator, denominator })
     }
 }
 

@@ -24,10 +24,7 @@ impl Record {
         self.writable()?;
         let written = File::create(path).and_then(|file| {
             let file = BufWriter::new(file);
-            if path
-                .extension()
-                .is_some_and(|extension| extension.eq_ignore_ascii_case("gz"))
-            {
+            if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz")) {
                 let mut packed = GzEncoder::new(file, Compression::default());
                 self.lines_to(&mut packed)?;
                 packed.finish()?.flush()
@@ -39,13 +36,7 @@ impl Record {
         });
         written.map_err(|source| {
             let file = Some(path.display().to_string());
-            DataError::Write {
-                at: Box::new(Place {
-                    file,
-                    ..Place::default()
-                }),
-                source,
-            }
+            DataError::Write { at: Box::new(Place { file, ..Place::default() }), source }
         })
     }
 
@@ -67,10 +58,7 @@ impl Record {
     pub fn write_csv_to(&self, mut to: impl Write) -> Result<(), DataError> {
         self.writable()?;
         let written = self.lines_to(&mut to).and_then(|()| to.flush());
-        written.map_err(|source| DataError::Write {
-            at: Box::default(),
-            source,
-        })
+        written.map_err(|source| DataError::Write { at: Box::default(), source })
     }
 
     fn writable(&self) -> Result<(), DataError> {
@@ -78,27 +66,17 @@ impl Record {
         for (k, signal) in self.signals().enumerate() {
             let at = || self.at(&signal.name);
             if signal.values.len() != expected {
-                return Err(DataError::Length {
-                    at: at(),
-                    found: signal.values.len(),
-                    expected,
-                });
+                return Err(DataError::Length { at: at(), found: signal.values.len(), expected });
             }
             let header = header(signal);
             let reads_back = super::unit::header(&header)
                 .is_some_and(|(name, unit)| name == signal.name && unit == signal.unit);
             let fits = !signal.name.is_empty() && signal.name != "time";
             if !(reads_back && fits) || header.contains(char::is_control) {
-                return Err(DataError::Header {
-                    at: at(),
-                    found: header,
-                });
+                return Err(DataError::Header { at: at(), found: header });
             }
             if let Some(first) = self.signals().take(k).position(|s| s.name == signal.name) {
-                return Err(DataError::DuplicateColumn {
-                    at: at(),
-                    first: first + 1,
-                });
+                return Err(DataError::DuplicateColumn { at: at(), first: first + 1 });
             }
             if let Some(row) = signal.values.iter().position(|value| value.is_infinite()) {
                 let found = format!("{} at sample {row}", signal.values[row]);
@@ -153,16 +131,13 @@ mod tests {
     #[test]
     fn odd_names_come_back() {
         let names = ["a,b [N;m]", "say \"u\"", "x y", "ü", "k[1] [m]"];
-        let record = names.iter().fold(Record::new(1.0), |record, name| {
-            record.input(name, vec![1.0, 2.0]).unwrap()
-        });
+        let record = names
+            .iter()
+            .fold(Record::new(1.0), |record, name| record.input(name, vec![1.0, 2.0]).unwrap());
         let mut text = Vec::new();
         record.write_csv_to(&mut text).unwrap();
         let table = Table::read(&text[..], "").unwrap();
-        assert_eq!(
-            table.names(),
-            ["time", "a,b", "say \"u\"", "x y", "ü", "k[1]"]
-        );
+        assert_eq!(table.names(), ["time", "a,b", "say \"u\"", "x y", "ü", "k[1]"]);
         assert_eq!(table.columns()[1].unit, "N;m");
     }
 
@@ -175,11 +150,7 @@ mod tests {
             |record| record.inputs[0].values[1] = f64::INFINITY,
             |record| record.outputs = record.inputs.clone(),
             |record| {
-                let y = Signal {
-                    name: "y".into(),
-                    unit: String::new(),
-                    values: vec![1.0],
-                };
+                let y = Signal { name: "y".into(), unit: String::new(), values: vec![1.0] };
                 record.outputs.push(y);
             },
         ];

@@ -8,9 +8,9 @@ use super::finding::Curve;
 use super::nominal::Nominal;
 use super::nuisance::Nuisance;
 use super::problem::{Grain, Job, Model, Part, Problem, Span};
-use crate::statistics::{dot, project};
 use crate::effect::{Mechanism, View, curve};
 use crate::plugins::effects::free_form::FreeForm;
+use crate::statistics::{dot, project};
 use crate::system::Placed;
 
 /// Knots of the free curve, at quantiles of the coordinate.
@@ -70,9 +70,8 @@ fn free_curve(
     view: &View,
 ) -> Option<Vec<(f64, f64, f64)>> {
     let cause = model.added[index].cause.clone();
-    let mut knots: Vec<f64> = (0..KNOTS)
-        .map(|i| view.quantile(0.002 + 0.996 * i as f64 / (KNOTS - 1) as f64))
-        .collect();
+    let mut knots: Vec<f64> =
+        (0..KNOTS).map(|i| view.quantile(0.002 + 0.996 * i as f64 / (KNOTS - 1) as f64)).collect();
     knots.dedup_by(|a, b| (*a - *b).abs() < 1e-3 * view.range());
     let law = curve(cause.shape.as_ref(), &model.added[index].knobs, &knots);
     let size = law.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
@@ -84,11 +83,8 @@ fn free_curve(
         let shape = FreeForm { knots: knots.clone(), values: values.to_vec() };
         let others = model.without(index);
         let mut job = problem.job(&others, Grain::Coarse)?;
-        let mut placed: Vec<Placed> = others
-            .added
-            .iter()
-            .filter_map(|a| a.cause.placed(&a.knobs))
-            .collect();
+        let mut placed: Vec<Placed> =
+            others.added.iter().filter_map(|a| a.cause.placed(&a.knobs)).collect();
         placed.push(Placed::new(Box::new(shape), &cause.into, cause.of.as_deref()));
         job.plan = problem.plan_anew(Grain::Coarse, &placed)?;
         job.lane.knobs.extend_from_slice(values);

@@ -28,9 +28,8 @@ fn of_output(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>], o: usize)
     let end = problem.len().min(nominal.series(0).len());
     let from = end.saturating_sub(MOST);
     let known = |k: usize| problem.weight[o][k] > 0.0;
-    let r: Vec<f64> = (from..end)
-        .map(|k| if known(k) { problem.y[o][k] - y[o][k] } else { 0.0 })
-        .collect();
+    let r: Vec<f64> =
+        (from..end).map(|k| if known(k) { problem.y[o][k] - y[o][k] } else { 0.0 }).collect();
     let n = r.len();
     let reach = REACH.min(n / 8);
     let split = (0.7 * n as f64) as usize;
@@ -46,8 +45,9 @@ fn of_output(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>], o: usize)
             (mean(part), deviation(part))
         })
         .collect();
-    let used: Vec<usize> =
-        (0..columns.len()).filter(|&j| centres[j].1 > 1e-12 * centres[j].0.abs() && centres[j].1 > 0.0).collect();
+    let used: Vec<usize> = (0..columns.len())
+        .filter(|&j| centres[j].1 > 1e-12 * centres[j].0.abs() && centres[j].1 > 0.0)
+        .collect();
     let scaled = |j: usize, k: usize| (columns[j][k] - centres[j].0) / centres[j].1;
     let a = DMatrix::from_fn(rows, used.len(), |i, j| scaled(used[j], reach + i));
     let level = mean(&r[reach..split]);

@@ -83,7 +83,8 @@ impl<'a> Diagnosis<'a> {
     }
 
     fn check_names(&self) -> Result<(), DiagnoseError> {
-        let known: Vec<&str> = crate::register::effects().iter().map(|(card, _)| card.name).collect();
+        let known: Vec<&str> =
+            crate::register::effects().iter().map(|(card, _)| card.name).collect();
         for name in self.allowed.only.iter().chain(&self.allowed.without) {
             if !known.contains(&name.as_str()) {
                 return Err(DiagnoseError::NoEffect { name: name.clone() });
@@ -167,7 +168,8 @@ impl<'a> Diagnosis<'a> {
         let finding = self.run(records, None, watch)?;
         let of_the_model = finding.causes.iter().find(|cause| cause.rows.is_none());
         // what no name was found for counts by its dependence on the inputs
-        let p_value = of_the_model.map_or_else(|| normal_tail(finding.left.dependence), |c| c.p_value);
+        let p_value =
+            of_the_model.map_or_else(|| normal_tail(finding.left.dependence), |c| c.p_value);
         let first_cause = of_the_model.or(finding.causes.first()).cloned();
         Ok(Checked { p_value, first_cause, interrupted: finding.interrupted })
     }
@@ -202,4 +204,3 @@ pub struct Checked {
     /// Whether somebody stopped the search.
     pub interrupted: bool,
 }
-

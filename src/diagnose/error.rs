@@ -91,12 +91,15 @@ impl Explain for DiagnoseError {
                     None => "`lacuna effects` lists all".into(),
                 }
             }
-            Self::NoParameter { name, known } => match nearest(name, known.iter().map(String::as_str)) {
-                Some(near) => format!("did you mean `{near}`? There are: {}", known.join(", ")),
-                None => format!("there are: {}", known.join(", ")),
-            },
+            Self::NoParameter { name, known } => {
+                match nearest(name, known.iter().map(String::as_str)) {
+                    Some(near) => format!("did you mean `{near}`? There are: {}", known.join(", ")),
+                    None => format!("there are: {}", known.join(", ")),
+                }
+            }
             Self::Extend { .. } => {
-                "every parameter must be a field of the model, or be mapped by `Physics::key`".into()
+                "every parameter must be a field of the model, or be mapped by `Physics::key`"
+                    .into()
             }
         })
     }

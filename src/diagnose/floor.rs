@@ -38,9 +38,8 @@ pub(crate) fn repeated(y: &[f64], period: usize, from: usize) -> Option<Floor> {
 pub(crate) fn predicted(r: &[f64], drives: &[&[f64]]) -> Option<Floor> {
     let n = r.len().min(drives.iter().map(|d| d.len()).min().unwrap_or(r.len()));
     let start = n.saturating_sub(MOST);
-    let rows: Vec<usize> = (start + PAST..n)
-        .filter(|&k| (k - PAST..=k).all(|j| r[j].is_finite()))
-        .collect();
+    let rows: Vec<usize> =
+        (start + PAST..n).filter(|&k| (k - PAST..=k).all(|j| r[j].is_finite())).collect();
     if rows.len() < 200 {
         return None;
     }
@@ -80,7 +79,8 @@ pub(crate) fn predicted(r: &[f64], drives: &[&[f64]]) -> Option<Floor> {
         .sum::<f64>()
         / held.len() as f64;
     let std = square.sqrt();
-    std.is_finite().then_some(Floor { std, method: "one-step prediction of what the baseline leaves" })
+    std.is_finite()
+        .then_some(Floor { std, method: "one-step prediction of what the baseline leaves" })
 }
 
 #[cfg(test)]

@@ -5,7 +5,9 @@ use std::sync::Arc;
 use super::candidate::{Candidate, Preference, Wire};
 use super::nominal::Nominal;
 use super::problem::{Grain, Model, Problem};
-use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, SignRule, View, curve};
+use crate::effect::{
+    CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, SignRule, View, curve,
+};
 use crate::register;
 use crate::system::{AlsoInto, Origin, Route};
 
@@ -153,7 +155,11 @@ impl Builder<'_, '_> {
                 into: parameter.name.clone(),
                 of: (!changes).then(|| "time".into()),
                 also_into: vec![],
-                preference: if changes { Preference::Parameter } else { Preference::DeclaredChannel },
+                preference: if changes {
+                    Preference::Parameter
+                } else {
+                    Preference::DeclaredChannel
+                },
                 place: Preference::Parameter,
                 linear: vec![0],
                 refine: vec![],
@@ -209,7 +215,9 @@ impl Builder<'_, '_> {
         let target = group[0].0;
         let input_of_group = |source: usize| {
             matches!(base.sources.entries[source].1, Origin::Input(_))
-                && group.iter().any(|&(t, _)| base.targets.entries[t].1 == base.sources.entries[source].1)
+                && group
+                    .iter()
+                    .any(|&(t, _)| base.targets.entries[t].1 == base.sources.entries[source].1)
         };
         // an input that only has its own path is no channel for the rest
         let twins = |of: Option<usize>| {
@@ -254,7 +262,13 @@ impl Builder<'_, '_> {
                     let series = self.nominal.series(source);
                     let both = series.iter().any(|v| *v < 0.0) && series.iter().any(|v| *v > 0.0);
                     let Some(d) = sign_of(source) else { continue };
-                    if !velocity || !both || d == 0.0 || known_position && signal.quantity.is_none() && !base.rates.is_rate(source) {
+                    if !velocity
+                        || !both
+                        || d == 0.0
+                        || known_position
+                            && signal.quantity.is_none()
+                            && !base.rates.is_rate(source)
+                    {
                         continue;
                     }
                     (d, None)
@@ -273,14 +287,18 @@ impl Builder<'_, '_> {
                     let position = sources.iter().any(|&other| {
                         base.rates.rate(other).is_some_and(|(r, _)| base.rates.same(r, source))
                     });
-                    let rate = if is_velocity { Some((source, 1.0)) } else { base.rates.rate(source) };
+                    let rate =
+                        if is_velocity { Some((source, 1.0)) } else { base.rates.rate(source) };
                     let Some(rate) = rate.filter(|_| !(is_velocity && position)) else { continue };
                     let Some(d) = sign_of(rate.0).filter(|d| *d != 0.0) else { continue };
                     (d * rate.1, Some(rate))
                 }
                 Needs::AngleOrTime => {
                     let angle = signal.unit == "rad"
-                        && signal.quantity.as_ref().is_none_or(|q| matches!(q.0.as_str(), "angle" | "position"));
+                        && signal
+                            .quantity
+                            .as_ref()
+                            .is_none_or(|q| matches!(q.0.as_str(), "angle" | "position"));
                     if !angle {
                         continue;
                     }
@@ -425,7 +443,11 @@ impl Builder<'_, '_> {
                 wire: if spot.own_path {
                     Wire::Path
                 } else {
-                    Wire::Stage(Route { source, rate: rate.unwrap_or((source, 0.0)), target: spot.target })
+                    Wire::Stage(Route {
+                        source,
+                        rate: rate.unwrap_or((source, 0.0)),
+                        target: spot.target,
+                    })
                 },
                 preference: if simple { Preference::Simple } else { preference },
                 place: preference,
@@ -466,12 +488,14 @@ impl Builder<'_, '_> {
         let fallback = if view.rms > 0.0 { view.rms } else { 1.0 };
         if card.states > 0 {
             // an oscillator shaken at its own frequency
-            let rate = card.knobs.iter().position(|k| k.name == "frequency").map_or(1.0, |i| start[i]);
+            let rate =
+                card.knobs.iter().position(|k| k.name == "frequency").map_or(1.0, |i| start[i]);
             return fallback * rate;
         }
         let mut knobs = start.to_vec();
         knobs[first] = 1.0;
-        let size = crate::statistics::rms(&curve(shape.as_ref(), &knobs, self.nominal.series(source)));
+        let size =
+            crate::statistics::rms(&curve(shape.as_ref(), &knobs, self.nominal.series(source)));
         if size > 0.0 && size.is_finite() { size } else { fallback }
     }
 }

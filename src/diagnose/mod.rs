@@ -27,11 +27,11 @@ mod teller;
 mod track;
 mod words;
 
+pub use crate::watch::Watch;
 pub use diagnosis::{Checked, Diagnosis};
 pub use error::DiagnoseError;
 pub use finding::{
-    Alternative, Cause, Curve, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack, Ranked,
-    Scores, Series, Track, Value, Verdict,
+    Alternative, Cause, Curve, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack,
+    Ranked, Scores, Series, Track, Value, Verdict,
 };
-pub use crate::watch::Watch;
 pub(crate) use words::number;

@@ -1,10 +1,10 @@
 //! The baseline along the record: what every coordinate does, which way channels push.
 
 use super::problem::{Grain, Model, Part, Problem};
-use crate::statistics::{deviation, median, rms};
 use crate::effect::View;
 use crate::model::probe::{Along, Point, slope};
 use crate::model::{Ask, Sizes};
+use crate::statistics::{deviation, median, rms};
 use crate::system::{Origin, Track};
 
 /// Samples at which slopes are looked at.
@@ -94,7 +94,11 @@ impl Nominal {
         Some(Self {
             state_spread: states.iter().map(|s| deviation(s) + 1e-12).collect(),
             frequencies: frequencies(first, dt),
-            time_scale: if time_scale.is_finite() && time_scale > 0.0 { time_scale } else { 10.0 * dt },
+            time_scale: if time_scale.is_finite() && time_scale > 0.0 {
+                time_scale
+            } else {
+                10.0 * dt
+            },
             seen: track.seen,
             y,
             natural,
@@ -135,7 +139,9 @@ impl Nominal {
                 match base.sources.entries[source].1 {
                     Origin::State(i) => column[i],
                     Origin::Own(i) if !base.declared_coordinates => column[i],
-                    Origin::Own(i) => slope(law, n, Ask::Coordinates, point, Along::State(column))[i],
+                    Origin::Own(i) => {
+                        slope(law, n, Ask::Coordinates, point, Along::State(column))[i]
+                    }
                     Origin::Output(o) => slope(law, n, Ask::Output, point, Along::State(column))[o],
                     _ => 0.0,
                 }

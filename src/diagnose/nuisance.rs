@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::nominal::Nominal;
 use super::problem::{Grain, Job, Model, Part, Problem, Span};
-use crate::statistics::add_to_basis;
 use crate::optimise::{Settings, Unknown};
+use crate::statistics::add_to_basis;
 
 /// One number of a model that can be moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -89,7 +89,8 @@ impl Nuisance {
                 let nominal = self.free.iter().find(|(q, _)| *q == p).map_or(value, |(_, v)| *v);
                 let parameter = &problem.base.signals.parameters[p];
                 let size = if nominal == 0.0 { 1.0 } else { nominal.abs() };
-                let floor = if nominal > 0.0 { parameter.min.max(0.05 * nominal) } else { parameter.min };
+                let floor =
+                    if nominal > 0.0 { parameter.min.max(0.05 * nominal) } else { parameter.min };
                 let unknown = Unknown::new(value, 0.1 * size).within(floor, parameter.max);
                 if self.released.contains(&p) {
                     unknown
@@ -101,7 +102,8 @@ impl Nuisance {
                 let cause = &model.added[a].cause;
                 let (min, max) = cause.bounds(i);
                 let scale = if cause.linear.contains(&i) {
-                    let size: f64 = cause.linear.iter().map(|&j| model.added[a].knobs[j].powi(2)).sum();
+                    let size: f64 =
+                        cause.linear.iter().map(|&j| model.added[a].knobs[j].powi(2)).sum();
                     size.sqrt().max(cause.probe.abs())
                 } else {
                     let range = if (max - min).is_finite() { 0.02 * (max - min) } else { 0.0 };

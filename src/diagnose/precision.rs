@@ -28,8 +28,7 @@ pub(crate) fn covariance(
         u.prior.map_or(0.0, |(_, deviation)| variance * (u.scale / deviation).powi(2))
     };
     let ridges: Vec<f64> = unknowns.iter().map(ridge).collect();
-    let relative =
-        statistics::covariance(&scaled, &fitted.residuals, problem.y.len(), &ridges)?;
+    let relative = statistics::covariance(&scaled, &fitted.residuals, problem.y.len(), &ridges)?;
     let n = unknowns.len();
     Some(DMatrix::from_fn(n, n, |i, j| relative[(i, j)] * unknowns[i].scale * unknowns[j].scale))
 }

@@ -87,7 +87,11 @@ impl<'a> Prepared<'a> {
     }
 
     /// What a search over windows found, fitted to these records.
-    pub fn finish(&mut self, allowed: &Allowed, found: Finished) -> Result<Finished, DiagnoseError> {
+    pub fn finish(
+        &mut self,
+        allowed: &Allowed,
+        found: Finished,
+    ) -> Result<Finished, DiagnoseError> {
         let trusted = Nuisance::new(&self.problem, &self.nominal);
         let nuisance = match found.track {
             Track::ParametersTrusted => trusted,

@@ -154,7 +154,9 @@ impl<'a> Problem<'a> {
             .iter()
             .map(|known| known.iter().map(|&known| f64::from(u8::from(known))).collect())
             .collect();
-        let y = measured.iter().map(|y| y.iter().map(|v| if v.is_finite() { *v } else { 0.0 }).collect());
+        let y = measured
+            .iter()
+            .map(|y| y.iter().map(|v| if v.is_finite() { *v } else { 0.0 }).collect());
         Ok(Self {
             coarse: base.clone(),
             fit_drive,
@@ -200,7 +202,8 @@ impl<'a> Problem<'a> {
         let name = |p: &Placed| {
             let values = p.effect.card().values();
             // which bounds are absent decides what is free; the values themselves come later
-            let absent: String = values.iter().map(|v| if v.is_finite() { 'f' } else { 'i' }).collect();
+            let absent: String =
+                values.iter().map(|v| if v.is_finite() { 'f' } else { 'i' }).collect();
             let also: Vec<&str> = p.also_into.iter().map(|a| a.channel()).collect();
             format!("{}>{}<{:?}{absent}{also:?}", p.effect.typetag_name(), p.into, p.of)
         };
@@ -229,8 +232,7 @@ impl<'a> Problem<'a> {
         let step = self.step(grain);
         let mut theta = model.theta.clone();
         let mut placed = vec![];
-        let mut knobs: Vec<f64> =
-            self.system.effects.iter().flat_map(|p| own_knobs(p)).collect();
+        let mut knobs: Vec<f64> = self.system.effects.iter().flat_map(|p| own_knobs(p)).collect();
         for added in &model.added {
             let own = added.cause.clipped(&added.knobs, step);
             match added.cause.wire {
@@ -242,7 +244,10 @@ impl<'a> Problem<'a> {
             }
         }
         let plan = self.plan(grain, &placed)?;
-        Some(Job { plan, lane: Lane { theta, starts: model.starts.clone(), knobs, ..Lane::default() } })
+        Some(Job {
+            plan,
+            lane: Lane { theta, starts: model.starts.clone(), knobs, ..Lane::default() },
+        })
     }
 
     /// Runs many simulations, side by side and on all threads.
@@ -433,9 +438,13 @@ impl<'a> Problem<'a> {
         for o in 0..self.y.len() {
             let over = 1.0 / self.scale[o];
             let (y, yhat, weight) = (&self.y[o], &yhat[o], &self.weight[o]);
-            r.extend(self.samples(part).map(|k| {
-                if weight[k] > 0.0 { (y[k] - yhat[k]) * over } else { 0.0 }
-            }));
+            r.extend(
+                self.samples(part).map(
+                    |k| {
+                        if weight[k] > 0.0 { (y[k] - yhat[k]) * over } else { 0.0 }
+                    },
+                ),
+            );
         }
         r
     }

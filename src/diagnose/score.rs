@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::finding::Gain;
 use super::floor::{Floor, predicted, repeated};
-use crate::statistics::{block_sums, blocks, spread};
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Metrics, Run};
+use crate::statistics::{block_sums, blocks, spread};
 use crate::system::System;
 
 /// Data that nothing was fitted to or chosen on.
@@ -68,7 +68,8 @@ impl TestData {
                 {
                     return Some(floor);
                 }
-                let inputs: Vec<Vec<f64>> = (0..signals.inputs.len()).map(|i| self.input(i)).collect();
+                let inputs: Vec<Vec<f64>> =
+                    (0..signals.inputs.len()).map(|i| self.input(i)).collect();
                 let lent: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
                 // inputs and errors end together
                 let n = before.errors[o].len();
@@ -140,10 +141,8 @@ pub(crate) fn gain(before: &Scored, after: &Scored, floors: &[Option<Floor>]) ->
             .collect();
         let share = error_removed;
         // the ratio's linearised contribution of every sample
-        let q: Vec<f64> = kept
-            .iter()
-            .map(|(b, a)| (b * b - a * a - share * (b * b - floor)) / unit)
-            .collect();
+        let q: Vec<f64> =
+            kept.iter().map(|(b, a)| (b * b - a * a - share * (b * b - floor)) / unit).collect();
         let count = blocks(&q);
         let sums = block_sums(&q, count);
         scatter += (spread(&sums) * (sums.len() as f64).sqrt() / q.len().max(1) as f64).powi(2);

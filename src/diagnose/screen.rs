@@ -156,7 +156,8 @@ pub(crate) fn screen(
     }
     let columns = probes.len();
     let hits = steer(problem, &mut sharing, candidates, &mut probes, &r, (1e-6, gentle), true);
-    let mut of_start: std::collections::BTreeMap<(usize, usize), Vec<(Vec<f64>, f64)>> = Default::default();
+    let mut of_start: std::collections::BTreeMap<(usize, usize), Vec<(Vec<f64>, f64)>> =
+        Default::default();
     for (probe, column) in hits {
         of_start.entry((probe.candidate, probe.start)).or_default().push((column, probe.size));
     }
@@ -192,15 +193,26 @@ pub(crate) fn screen(
                 };
                 for sign in signs {
                     let size = size.abs() * sign;
-                    probes.push(Probe { candidate: c, start, which: 0, size, done: false, failed: false });
+                    probes.push(Probe {
+                        candidate: c,
+                        start,
+                        which: 0,
+                        size,
+                        done: false,
+                        failed: false,
+                    });
                 }
             }
         }
         let target = 0.7 * residual;
-        for (probe, column) in steer(problem, &mut sharing, candidates, &mut probes, &r, (0.3, target), false) {
+        for (probe, column) in
+            steer(problem, &mut sharing, candidates, &mut probes, &r, (0.3, target), false)
+        {
             let cause = &candidates[probe.candidate];
             let sign = probe.size.signum();
-            if let Some(scored) = at.score(cause, probe.start, vec![(column, probe.size)], Some(sign)) {
+            if let Some(scored) =
+                at.score(cause, probe.start, vec![(column, probe.size)], Some(sign))
+            {
                 keep(&mut best[probe.candidate], scored);
             }
         }

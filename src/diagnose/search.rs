@@ -9,10 +9,10 @@ use super::nominal::Nominal;
 use super::nuisance::{Nuisance, Refit, refit};
 use super::problem::{Grain, Model, Part, Problem};
 use super::screen::Screen;
-use crate::watch::Watch;
-use crate::statistics::strongest;
 use super::stage::{REFITTED, Trial, stage, trial};
+use crate::statistics::strongest;
 use crate::statistics::whiteness;
+use crate::watch::Watch;
 
 /// Score at which a model beats another for good, and below which both are as good.
 const ACCEPT: f64 = 4.0;
@@ -94,7 +94,8 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Fits a model where it stands, on the part that is fitted.
     pub fn fitted(&self, model: Model) -> Model {
-        let fitted = refit(self.problem, &self.nuisance, std::slice::from_ref(&model), Refit::search());
+        let fitted =
+            refit(self.problem, &self.nuisance, std::slice::from_ref(&model), Refit::search());
         fitted.into_iter().flatten().next().map_or(model, |f| f.model)
     }
 
@@ -112,8 +113,7 @@ impl<'a, 'b> Search<'a, 'b> {
     fn accepts(&self, a: &[Vec<f64>], b: &[Vec<f64>], weak: bool) -> bool {
         let score = self.score(a, b) - f64::from(u8::from(weak));
         let ((fit_a, held_a), (fit_b, held_b)) = (self.mean_squares(a), self.mean_squares(b));
-        score >= self.accept
-            || score > 1.0 && held_b < STRONG * held_a && fit_b < STRONG * fit_a
+        score >= self.accept || score > 1.0 && held_b < STRONG * held_a && fit_b < STRONG * fit_a
     }
 
     /// Whether `a` explains as well as `b`, given what stood before.
@@ -212,7 +212,10 @@ impl<'a, 'b> Search<'a, 'b> {
         let mut full = true;
         for number in 0..self.most.max(1) {
             let (at, step) = (number as f64 / (self.most + 1) as f64, 1.0 / (self.most + 1) as f64);
-            self.tell(at, if slots.is_empty() { "screening candidates" } else { "looking for more" });
+            self.tell(
+                at,
+                if slots.is_empty() { "screening candidates" } else { "looking for more" },
+            );
             if self.most == 0 || self.watch.stopped() {
                 full = false;
                 break;
@@ -223,7 +226,8 @@ impl<'a, 'b> Search<'a, 'b> {
                 break;
             }
             let candidates = self.candidates(&model);
-            let found = stage(self.problem, &self.nuisance, &model, &candidates, number == 0, REFITTED)?;
+            let found =
+                stage(self.problem, &self.nuisance, &model, &candidates, number == 0, REFITTED)?;
             self.tell(at + 0.5 * step, "comparing explanations");
             let mut trials = found.trials;
             if number == 0 {
@@ -236,7 +240,11 @@ impl<'a, 'b> Search<'a, 'b> {
                 if let Some((better_first, pool)) =
                     self.pairs(&model, &before, &previous, &trials, &candidates)
                 {
-                    slots = vec![Slot { set: vec![(better_first, 1.0)], others: vec![], score: self.accept }];
+                    slots = vec![Slot {
+                        set: vec![(better_first, 1.0)],
+                        others: vec![],
+                        score: self.accept,
+                    }];
                     trials = pool;
                 }
             }
@@ -300,7 +308,8 @@ impl<'a, 'b> Search<'a, 'b> {
         let first = model.added.first()?.cause.clone();
         let base = self.problem.mean_square(before, Part::Choose);
         let sibling = |t: &Trial| t.cause.into == first.into && t.cause.of == first.of;
-        let mut others: Vec<&Trial> = previous.iter().filter(|t| !t.cause.same_cause(&first)).collect();
+        let mut others: Vec<&Trial> =
+            previous.iter().filter(|t| !t.cause.same_cause(&first)).collect();
         others.sort_by(|a, b| sibling(b).cmp(&sibling(a)).then(a.held.total_cmp(&b.held)));
         let mut taken: Vec<Arc<Vec<Vec<f64>>>> = vec![before.clone()];
         let mut pool: Vec<Trial> = trials.to_vec();
@@ -312,7 +321,8 @@ impl<'a, 'b> Search<'a, 'b> {
             let near = |y: &Arc<Vec<Vec<f64>>>| {
                 let left = |y: &[Vec<f64>]| self.problem.residual(y, Part::Choose);
                 let (a, b) = (left(&other.y), left(y));
-                let off: f64 = a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64;
+                let off: f64 =
+                    a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64;
                 off < 0.01 * other.held.min(base)
             };
             if taken.iter().any(near) {
@@ -320,7 +330,9 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             taken.push(other.y.clone());
             expanded += 1;
-            if let Some(found) = stage(self.problem, &self.nuisance, &other.model, candidates, false, 6) {
+            if let Some(found) =
+                stage(self.problem, &self.nuisance, &other.model, candidates, false, 6)
+            {
                 pool.extend(found.trials);
             }
         }
@@ -330,7 +342,8 @@ impl<'a, 'b> Search<'a, 'b> {
         if !self.accepts(before, &best.y, best.weak) || new_first.same_cause(&first) {
             return None;
         }
-        let same_first = |t: &Trial| t.model.added.first().is_some_and(|a| a.cause.same_cause(&new_first));
+        let same_first =
+            |t: &Trial| t.model.added.first().is_some_and(|a| a.cause.same_cause(&new_first));
         let pool = pool.iter().filter(|t| same_first(t)).cloned().collect();
         Some((new_first, pool))
     }
@@ -391,9 +404,15 @@ impl<'a, 'b> Search<'a, 'b> {
                 let cause = model.added[i].cause.clone();
                 let without = self.fitted(model.without(i));
                 let candidates = self.candidates(&without);
-                let Some(found) = stage(self.problem, &self.nuisance, &without, &candidates, false, 6) else { continue };
+                let Some(found) =
+                    stage(self.problem, &self.nuisance, &without, &candidates, false, 6)
+                else {
+                    continue;
+                };
                 let trials = found.trials;
-                let (Some(now), Some(bare)) = (self.present(model), self.present(&without)) else { continue };
+                let (Some(now), Some(bare)) = (self.present(model), self.present(&without)) else {
+                    continue;
+                };
                 let Some(best) = trials.first() else { continue };
                 let before = self.problem.mean_square(&bare, Part::Choose);
                 if !best.cause.same_cause(&cause) && self.score(&now, &best.y) > 1.0 {

@@ -69,8 +69,7 @@ pub(crate) fn stage(
     let bar = gate(screened.columns);
     let passes = |s: &Scored| {
         let own_bar = if is_hum(&s.cause) { bar + 1.5 } else { bar };
-        s.score.abs() > own_bar
-            || !is_hum(&s.cause) && s.explained > LARGE_SHARE * screened.total
+        s.score.abs() > own_bar || !is_hum(&s.cause) && s.explained > LARGE_SHARE * screened.total
     };
     let scanned = if let Some(best) = screened.scored.first()
         && (best.explained < SCAN_BELOW * screened.total || screened.far > SCAN_FAR)
@@ -337,6 +336,12 @@ pub(crate) fn trial(
     let y = y?;
     let held = problem.mean_square(&y, Part::Choose);
     let fit = problem.mean_square(&y, Part::Fit);
-    (held.is_finite() && fit.is_finite())
-        .then(|| Trial { cause: cause.clone(), model, y, held, fit, weak })
+    (held.is_finite() && fit.is_finite()).then(|| Trial {
+        cause: cause.clone(),
+        model,
+        y,
+        held,
+        fit,
+        weak,
+    })
 }

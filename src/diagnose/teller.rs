@@ -172,9 +172,8 @@ impl Teller<'_, '_> {
         outputs
             .filter_map(|(o, signal)| {
                 let periods = used.first().filter(|_| used.len() == 1).and_then(Record::periods);
-                let from_periods = periods.and_then(|p| {
-                    repeated(&self.joined.measured[o], p.samples, p.samples / 10)
-                });
+                let from_periods = periods
+                    .and_then(|p| repeated(&self.joined.measured[o], p.samples, p.samples / 10));
                 let from_prediction = || {
                     let n = before[o].len();
                     let r: Vec<f64> =

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
+use super::candidate::Wire;
 use super::dependence::dependence;
+use super::finding::{Moved, Track};
 use super::library::Allowed;
 use super::nominal::Nominal;
 use super::nuisance::{Fitted, Key, Nuisance, Refit, refit};
@@ -11,8 +13,6 @@ use super::problem::{Grain, Model, Part, Problem};
 use super::search::{Found, Search, Slot};
 use crate::statistics::whiteness;
 use crate::watch::Watch;
-use super::candidate::Wire;
-use super::finding::{Moved, Track};
 
 /// Standard errors beyond which a parameter counts as moved.
 const MOVED: f64 = 3.0;
@@ -111,15 +111,19 @@ impl Tracks<'_, '_> {
 
     fn search(&mut self, nuisance: Nuisance, start: &Model, share: (f64, f64)) -> Option<Found> {
         let (allowed, most, watch) = (self.allowed, self.most, self.watch);
-        let mut search =
-            Search::new(self.problem, self.nominal, nuisance, allowed, most, watch);
+        let mut search = Search::new(self.problem, self.nominal, nuisance, allowed, most, watch);
         search.share = share;
         search.run(start.clone())
     }
 
     /// The trusted track's causes with parameters free, less those that are not needed any
     /// more: cheap, where the trusted track left nothing.
-    fn carried_over(&mut self, free: &Nuisance, start: &Model, trusted: &Finished) -> Option<Found> {
+    fn carried_over(
+        &mut self,
+        free: &Nuisance,
+        start: &Model,
+        trusted: &Finished,
+    ) -> Option<Found> {
         self.watch.tell(0.9, "letting parameters move");
         let mut model = start.clone();
         model.added = trusted.fitted.model.added.clone();
@@ -150,8 +154,9 @@ impl Tracks<'_, '_> {
 
     /// The final fit on all data.
     pub fn finish(&mut self, track: Track, found: Found, nuisance: Nuisance) -> Option<Finished> {
-        let fitted = refit(self.problem, &nuisance, std::slice::from_ref(&found.model), Refit::last())
-            .swap_remove(0)?;
+        let fitted =
+            refit(self.problem, &nuisance, std::slice::from_ref(&found.model), Refit::last())
+                .swap_remove(0)?;
         let y = self.problem.simulate(&fitted.model, Grain::Fine)?;
         let covariance = covariance(self.problem, &nuisance, &fitted);
         let moved = nuisance

@@ -41,7 +41,12 @@ pub(crate) fn percent(share: f64) -> String {
 }
 
 /// The sentence of a cause.
-pub(crate) fn sentence(cause: &Candidate, values: &[Value], removed: f64, nominal: Option<f64>) -> String {
+pub(crate) fn sentence(
+    cause: &Candidate,
+    values: &[Value],
+    removed: f64,
+    nominal: Option<f64>,
+) -> String {
     let share = format!("explains {} of the removable error", percent(removed));
     let first = values.first();
     let size = first.map_or(String::new(), |v| magnitude(v, false));

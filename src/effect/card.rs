@@ -251,7 +251,8 @@ impl EffectCard {
 
     /// Whether the values make the effect vanish.
     pub fn is_neutral(&self, values: &[f64]) -> bool {
-        let coefficients = self.knobs.iter().zip(values).filter(|(k, _)| k.role == Role::Coefficient);
+        let coefficients =
+            self.knobs.iter().zip(values).filter(|(k, _)| k.role == Role::Coefficient);
         let mut any = false;
         let mut all_zero = true;
         for (_, value) in coefficients {

@@ -2,8 +2,8 @@
 
 use std::fmt::Debug;
 
-use serde::de::DeserializeOwned;
 use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 use super::card::{EffectCard, Named, Search};
 use super::view::View;

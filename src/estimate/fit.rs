@@ -122,7 +122,10 @@ impl<'a> Fit<'a> {
         let signals = &first.plan.signals;
         let known = || signals.parameters.iter().map(|p| p.name.clone());
         if let Some(name) = held.iter().find(|&name| known().all(|other| other != *name)) {
-            return Err(EvaluateError::NoParameter { name: name.clone(), known: known().collect() });
+            return Err(EvaluateError::NoParameter {
+                name: name.clone(),
+                known: known().collect(),
+            });
         }
         let (mut keys, mut unknowns, mut names) = (vec![], vec![], vec![]);
         for (p, parameter) in signals.parameters.iter().enumerate() {
@@ -219,9 +222,11 @@ impl<'a> Fit<'a> {
                             let Some(measured) = measured else { continue };
                             let over = 1.0 / self.spreads[o];
                             let known = drive.segments.iter().cloned().flatten();
-                            all.extend(known.filter(|&k| measured[k].is_finite()).map(|k| {
-                                (measured[k] - track.y[o][k]) * over
-                            }));
+                            all.extend(
+                                known
+                                    .filter(|&k| measured[k].is_finite())
+                                    .map(|k| (measured[k] - track.y[o][k]) * over),
+                            );
                         }
                     }
                 }
@@ -321,7 +326,8 @@ impl<'a> Fit<'a> {
             let value = done.point[i];
             let at_bound = value <= u.bounds.0 || value >= u.bounds.1;
             let error = covariance.as_ref().map(|c| c[(i, i)].sqrt() * u.scale);
-            let error = error.filter(|e| e.is_finite() && *e < 1e3 * value.abs().max(u.scale) && !at_bound);
+            let error =
+                error.filter(|e| e.is_finite() && *e < 1e3 * value.abs().max(u.scale) && !at_bound);
             parameters.push(Estimated {
                 name: name.clone(),
                 from: u.start,
@@ -376,10 +382,12 @@ impl<'a> Fit<'a> {
                 Key::Start(..) => {}
             }
         }
-        let written = |error: serde_json::Error| EvaluateError::NotWritten { reason: error.to_string() };
+        let written =
+            |error: serde_json::Error| EvaluateError::NotWritten { reason: error.to_string() };
         let mut system = self.system.clone();
         if !changes.is_empty() {
-            system.model = with_parameters(self.system.model.as_ref(), &changes).map_err(written)?;
+            system.model =
+                with_parameters(self.system.model.as_ref(), &changes).map_err(written)?;
         }
         let mut slots = first.plan.slots.iter();
         let mut effects: Vec<Placed> = vec![];

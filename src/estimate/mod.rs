@@ -3,6 +3,6 @@
 mod fit;
 mod rank;
 
-pub use fit::{Estimate, Estimated, estimate};
 pub(crate) use fit::estimate_with;
+pub use fit::{Estimate, Estimated, estimate};
 pub use rank::Combination;

@@ -42,7 +42,9 @@ pub enum EvaluateError {
         model_step: f64,
     },
     /// The simulation leaves the finite numbers from the start.
-    #[error("{record}: the simulation diverges at sample {sample} (t = {time} s), before it can be compared")]
+    #[error(
+        "{record}: the simulation diverges at sample {sample} (t = {time} s), before it can be compared"
+    )]
     Diverges {
         /// Name of the record.
         record: String,
@@ -86,12 +88,12 @@ impl Explain for EvaluateError {
             Self::NoSignal { record, name, .. } => {
                 Place { file: Some(record.clone()), key: Some(name.clone()), ..Place::default() }
             }
-            Self::TooShort { record, .. } | Self::Step { record, .. } | Self::Diverges { record, .. } => {
+            Self::TooShort { record, .. }
+            | Self::Step { record, .. }
+            | Self::Diverges { record, .. } => {
                 Place { file: Some(record.clone()), ..Place::default() }
             }
-            Self::NoParameter { name, .. } => {
-                Place { key: Some(name.clone()), ..Place::default() }
-            }
+            Self::NoParameter { name, .. } => Place { key: Some(name.clone()), ..Place::default() },
             Self::NothingFree | Self::NotWritten { .. } => Place::default(),
         }
     }
@@ -114,7 +116,8 @@ impl Explain for EvaluateError {
                 "use more substeps in `integrator`, or check parameters and initial values".into()
             }
             Self::NotWritten { .. } => {
-                "every parameter must be a field of the model, or be mapped by `Physics::key`".into()
+                "every parameter must be a field of the model, or be mapped by `Physics::key`"
+                    .into()
             }
             Self::NoParameter { name, known } => {
                 match nearest(name, known.iter().map(String::as_str)) {

@@ -6,5 +6,5 @@ mod simulate;
 
 pub use error::EvaluateError;
 pub use metric::Metrics;
-pub(crate) use simulate::{Run, drive, measured};
 pub use simulate::{Init, Simulation};
+pub(crate) use simulate::{Run, drive, measured};

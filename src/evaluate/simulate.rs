@@ -71,7 +71,8 @@ impl Simulation {
             let Some(measured) = &run.measured[o] else { continue };
             let from = count.min(measured.len());
             metrics.extend(
-                Metrics::of(&measured[from..], &track.y[o][from..]).map(|m| (signal.name.clone(), m)),
+                Metrics::of(&measured[from..], &track.y[o][from..])
+                    .map(|m| (signal.name.clone(), m)),
             );
         }
         let names = signals.states.iter().map(|s| s.signal.name.clone());
@@ -139,8 +140,7 @@ impl<'a> Run<'a> {
             });
         }
         let step = record.sampling_time;
-        if let (false, Some(own)) =
-            (signals.time.is_continuous(), system.sampling.sampling_time)
+        if let (false, Some(own)) = (signals.time.is_continuous(), system.sampling.sampling_time)
             && (step - own).abs() > 0.01 * own
         {
             return Err(EvaluateError::Step {
@@ -189,7 +189,9 @@ impl<'a> Run<'a> {
             Init::Forgotten => {
                 let most = ((MOST * n as f64) as usize).max(1).min(n);
                 let reached = self.memory(2 * most);
-                reached.clamp(2 * self.plan.sizes.x.max(1), most.max(2 * self.plan.sizes.x.max(1))).min(n)
+                reached
+                    .clamp(2 * self.plan.sizes.x.max(1), most.max(2 * self.plan.sizes.x.max(1)))
+                    .min(n)
             }
         }
     }
@@ -215,9 +217,9 @@ impl<'a> Run<'a> {
         let mut reached = 0;
         for moved in &tracks[1..] {
             for (a, b) in tracks[0].y.iter().zip(&moved.y) {
-                let off: Vec<f64> =
-                    (first.start..end).map(|k| (a[k] - b[k]).abs()).collect();
-                let largest = off.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(*v) } else { m });
+                let off: Vec<f64> = (first.start..end).map(|k| (a[k] - b[k]).abs()).collect();
+                let largest =
+                    off.iter().fold(0.0, |m: f64, v| if v.is_finite() { m.max(*v) } else { m });
                 let last = off.iter().rposition(|v| !(*v <= FORGOTTEN * largest));
                 if largest > 0.0 {
                     reached = reached.max(last.map_or(0, |k| k + 1));
@@ -258,8 +260,7 @@ impl<'a> Run<'a> {
         let settings = Settings { iterations: 40, tolerance: 1e-10, difference: 1e-4 };
         let mut fit = Levenberg::new(unknowns.collect(), settings);
         while !fit.is_done() {
-            let lanes: Vec<Lane> =
-                fit.propose().into_iter().map(|x| self.lane(vec![x])).collect();
+            let lanes: Vec<Lane> = fit.propose().into_iter().map(|x| self.lane(vec![x])).collect();
             let answers = self
                 .system
                 .run(&self.plan, &drive, &lanes)
@@ -294,17 +295,14 @@ impl<'a> Run<'a> {
         let mut r = vec![];
         for (y, simulated) in self.measured.iter().zip(&track.y) {
             let Some(y) = y else { continue };
-            let known: Vec<f64> = range
-                .clone()
-                .filter(|&k| y[k].is_finite())
-                .map(|k| y[k] - simulated[k])
-                .collect();
+            let known: Vec<f64> =
+                range.clone().filter(|&k| y[k].is_finite()).map(|k| y[k] - simulated[k]).collect();
             // outputs of different unit count by their own spread
-            let values: Vec<f64> =
-                range.clone().map(|k| y[k]).filter(|v| v.is_finite()).collect();
+            let values: Vec<f64> = range.clone().map(|k| y[k]).filter(|v| v.is_finite()).collect();
             let centre = values.iter().sum::<f64>() / values.len().max(1) as f64;
-            let spread =
-                (values.iter().map(|v| (v - centre).powi(2)).sum::<f64>() / values.len().max(1) as f64).sqrt();
+            let spread = (values.iter().map(|v| (v - centre).powi(2)).sum::<f64>()
+                / values.len().max(1) as f64)
+                .sqrt();
             let over = if spread > 0.0 && self.measured.len() > 1 { 1.0 / spread } else { 1.0 };
             r.extend(known.iter().map(|v| v * over));
         }

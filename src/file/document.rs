@@ -147,9 +147,7 @@ impl Document {
 /// The first number that is not finite.
 fn infinite(node: &Node, key: &str) -> Option<(String, Range<usize>, f64)> {
     match &node.value {
-        Value::Float(value) if !value.is_finite() => {
-            Some((key.into(), node.span.clone(), *value))
-        }
+        Value::Float(value) if !value.is_finite() => Some((key.into(), node.span.clone(), *value)),
         Value::List(list) => list
             .iter()
             .enumerate()

@@ -154,7 +154,8 @@ impl FileError {
     pub fn near(&self) -> Option<String> {
         match self {
             Self::Value { complaint, .. } => match complaint.as_ref() {
-                Complaint::UnknownKey { found, known } | Complaint::UnknownName { found, known } => {
+                Complaint::UnknownKey { found, known }
+                | Complaint::UnknownName { found, known } => {
                     nearest(found, known.iter().map(String::as_str))
                 }
                 _ => None,

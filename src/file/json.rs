@@ -153,14 +153,17 @@ impl Walker<'_> {
             "true" => Value::Bool(true),
             "false" => Value::Bool(false),
             // the JSON library knows which forms are numbers
-            _ => match (serde_json::from_str::<serde_json::Number>(word), word.parse(), word.parse()) {
-                (Ok(_), Ok(value), _) => Value::Integer(value),
-                (Ok(_), _, Ok(value)) => Value::Float(value),
-                _ => {
-                    let message = format!("`{word}` is not a value");
-                    return Err(Syntax { at: self.at..self.at + length, message });
+            _ => {
+                match (serde_json::from_str::<serde_json::Number>(word), word.parse(), word.parse())
+                {
+                    (Ok(_), Ok(value), _) => Value::Integer(value),
+                    (Ok(_), _, Ok(value)) => Value::Float(value),
+                    _ => {
+                        let message = format!("`{word}` is not a value");
+                        return Err(Syntax { at: self.at..self.at + length, message });
+                    }
                 }
-            },
+            }
         };
         self.at += length;
         Ok(value)

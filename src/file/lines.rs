@@ -116,7 +116,8 @@ fn inline(value: &Value) -> String {
         }
         Value::Object(table) if table.is_empty() => "{}".into(),
         Value::Object(table) => {
-            let entry = |(key, value): (&String, &Value)| format!("{} = {}", self::key(key), inline(value));
+            let entry =
+                |(key, value): (&String, &Value)| format!("{} = {}", self::key(key), inline(value));
             let entries: Vec<_> = table.iter().map(entry).collect();
             format!("{{ {} }}", entries.join(", "))
         }

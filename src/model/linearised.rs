@@ -73,7 +73,8 @@ impl Linearised {
                 .iter()
                 .enumerate()
                 .map(|(i, &v)| {
-                    let from = F64x8::constant(from.get(i % from.len().max(1)).copied().unwrap_or(0.0));
+                    let from =
+                        F64x8::constant(from.get(i % from.len().max(1)).copied().unwrap_or(0.0));
                     let mut dual = D::fixed(from);
                     dual.slope[0] = v - from;
                     dual
@@ -141,14 +142,21 @@ impl Law for Linearised {
     fn faults(&self) -> Vec<Fault> {
         let inner = self.of.faults();
         if !inner.is_empty() {
-            return inner.into_iter().map(|f| Fault { key: format!("of.{}", f.key), ..f }).collect();
+            return inner
+                .into_iter()
+                .map(|f| Fault { key: format!("of.{}", f.key), ..f })
+                .collect();
         }
         let sizes = Sizes::of(&self.of.signals());
         let mut faults = vec![];
         if let Some(at) = &self.at {
             for (key, given, count) in [("at.x", &at.x, sizes.x), ("at.u", &at.u, sizes.u)] {
                 if !given.is_empty() && given.len() != count {
-                    faults.push(Fault::new(key, format!("{} numbers", given.len()), format!("{count}")));
+                    faults.push(Fault::new(
+                        key,
+                        format!("{} numbers", given.len()),
+                        format!("{count}"),
+                    ));
                 }
             }
         } else if self.point().is_none() {
@@ -177,7 +185,8 @@ impl Law for Linearised {
     fn matrices(&self, theta: &[f64]) -> Option<Matrices> {
         let (x, u) = self.point()?;
         let sizes = Sizes::of(&self.of.signals());
-        let at = super::probe::Point { theta: theta.to_vec(), x, u, w: vec![0.0; sizes.w], time: 0.0 };
+        let at =
+            super::probe::Point { theta: theta.to_vec(), x, u, w: vec![0.0; sizes.w], time: 0.0 };
         Some(super::probe::matrices(self.of.as_ref(), sizes, &at))
     }
 }
@@ -199,8 +208,7 @@ fn equilibrium(law: &dyn StateSpaceModel) -> Option<(Vec<f64>, Vec<f64>)> {
     for x in [vec![0.0; sizes.x], signals.initial()] {
         let mut at = start(x);
         for _ in 0..100 {
-            let mut rest =
-                DVector::from_vec(super::probe::value(law, sizes, Ask::Derivative, &at));
+            let mut rest = DVector::from_vec(super::probe::value(law, sizes, Ask::Derivative, &at));
             let mut slope = super::probe::matrices(law, sizes, &at).a;
             if discrete {
                 rest -= DVector::from_column_slice(&at.x);

@@ -201,13 +201,19 @@ impl Physics for Lti {
                     faults.push(Fault::new(format!("{letter}[{i}]"), found, format!("{columns}")));
                 }
                 for (j, value) in row.iter().enumerate().filter(|(_, v)| !v.is_finite()) {
-                    faults.push(Fault::new(format!("{letter}[{i}][{j}]"), value, "a finite number"));
+                    faults.push(Fault::new(
+                        format!("{letter}[{i}][{j}]"),
+                        value,
+                        "a finite number",
+                    ));
                 }
             }
         }
-        for (key, given, count) in
-            [("inputs", &self.inputs, nu), ("states", &self.states, n), ("outputs", &self.outputs, ny)]
-        {
+        for (key, given, count) in [
+            ("inputs", &self.inputs, nu),
+            ("states", &self.states, n),
+            ("outputs", &self.outputs, ny),
+        ] {
             if !given.is_empty() && given.len() != count {
                 let found = format!("{} names", given.len());
                 faults.push(Fault::new(key, found, format!("{count}, as the matrices say")));

@@ -5,15 +5,18 @@
 //! blocks of lanes at once; a blanket implementation turns the first into the second.
 //! [`StateSpaceModel`] is the registered trait: empty, with `Law` below it.
 
-mod law;
 pub mod equations;
-pub mod lti;
+mod law;
 pub mod linearised;
+pub mod lti;
 mod physics;
 pub(crate) mod probe;
 mod signals;
 
-pub use law::{Ask, Block, Call, DIRECTIONS, Dual32, Dual64, Fault, LaneNumber, Law, Matrices, Pull, PullCall, Sizes};
+pub use law::{
+    Ask, Block, Call, DIRECTIONS, Dual32, Dual64, Fault, LaneNumber, Law, Matrices, Pull, PullCall,
+    Sizes,
+};
 pub use physics::{At, Physics};
 pub use signals::{Parameter, Quantity, Signal, Signals, State, TimeKind};
 

@@ -7,7 +7,8 @@ use crate::diagnose::{Alternative, Cause, Curve, Finding, number};
 /// The section of a cause.
 pub fn section(page: &mut Page, finding: &Finding, index: usize) {
     let cause = &finding.causes[index];
-    let number_of = if finding.causes.len() > 1 { format!("{}. ", index + 1) } else { String::new() };
+    let number_of =
+        if finding.causes.len() > 1 { format!("{}. ", index + 1) } else { String::new() };
     page.heading(&format!("{number_of}{}", title(cause)));
     for curve in finding.series.curves.iter().filter(|c| c.cause == index) {
         page.raw(&figure(curve).svg());
@@ -21,7 +22,13 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
         .map(|p| {
             let spread = p.std_error.map_or_else(
                 || "not resolved by this record".into(),
-                |e| format!("{} to {}", number(p.value - 1.96 * e, Some(e)), number(p.value + 1.96 * e, Some(e))),
+                |e| {
+                    format!(
+                        "{} to {}",
+                        number(p.value - 1.96 * e, Some(e)),
+                        number(p.value + 1.96 * e, Some(e))
+                    )
+                },
             );
             vec![p.name.clone(), number(p.value, p.std_error), spread, p.unit.clone()]
         })
@@ -31,15 +38,25 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
     }
     if let Some(rows) = &cause.rows {
         let shown: Vec<String> = rows.iter().take(60).map(ToString::to_string).collect();
-        let more = if rows.len() > 60 { format!(" and {} more", rows.len() - 60) } else { String::new() };
+        let more =
+            if rows.len() > 60 { format!(" and {} more", rows.len() - 60) } else { String::new() };
         page.element("p", "", &format!("Rows: {}{more}.", shown.join(", ")));
     }
     let entry = |what: &str, a: &Alternative| {
-        vec![what.into(), a.effect.clone(), a.into.clone(), a.of.clone().unwrap_or_default(), share(a.error_removed)]
+        vec![
+            what.into(),
+            a.effect.clone(),
+            a.into.clone(),
+            a.of.clone().unwrap_or_default(),
+            share(a.error_removed),
+        ]
     };
     let mut rows = vec![vec![
-        "named".into(), cause.effect.clone(), cause.into.clone(),
-        cause.of.clone().unwrap_or_default(), share(cause.error_removed),
+        "named".into(),
+        cause.effect.clone(),
+        cause.into.clone(),
+        cause.of.clone().unwrap_or_default(),
+        share(cause.error_removed),
     ]];
     rows.extend(cause.indistinguishable.iter().map(|a| entry("looks alike", a)));
     rows.extend(cause.runners_up.iter().map(|a| entry("runner-up", a)));
@@ -62,6 +79,7 @@ pub fn figure(curve: &Curve) -> Figure {
     let dots = curve.knots.iter().map(|&(z, w, e)| (z, w, 2.0 * e)).collect();
     let figure = Figure::new(&axis(&curve.coordinate, ""), &axis(&curve.channel, "missing in "))
         .height(320.0);
-    let figure = if curve.knots.is_empty() { figure } else { figure.dots("free", "without a shape", dots) };
+    let figure =
+        if curve.knots.is_empty() { figure } else { figure.dots("free", "without a shape", dots) };
     figure.line("law", "the law named", curve.law.clone())
 }

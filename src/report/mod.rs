@@ -96,7 +96,8 @@ impl<'a> Report<'a> {
         }
         for (name, before) in &finding.before.test {
             let Some(after) = finding.after.test.get(name) else { continue };
-            let unit = finding.series.outputs.iter().find(|(n, _)| n == name).map_or("", |(_, u)| u);
+            let unit =
+                finding.series.outputs.iter().find(|(n, _)| n == name).map_or("", |(_, u)| u);
             page.element("p", "gain", &format!(
                 "{name}, on data not used before: RMSE {} \u{2192} {} {unit} (fit {:.1} \u{2192} {:.1} %).",
                 number(before.rmse, None), number(after.rmse, None),

@@ -36,7 +36,8 @@ impl Page {
         };
         self.body.push_str("<div class=\"scroll\"><table><thead><tr>");
         for (i, text) in header.iter().enumerate() {
-            let _ = write!(self.body, "<th{}>{}</th>", class(i), escape(text.trim_start_matches('#')));
+            let _ =
+                write!(self.body, "<th{}>{}</th>", class(i), escape(text.trim_start_matches('#')));
         }
         self.body.push_str("</tr></thead><tbody>");
         for row in rows {

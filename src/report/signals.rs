@@ -51,8 +51,11 @@ pub fn sections(page: &mut Page, series: &Series, finding: &Finding) {
         }
         page.raw(&figure.svg());
         page.element("p", "note", "Close-up where the model is most wrong.");
-        let mut figure = Figure::new("time [s]", &format!("residual of {name}{of_unit}"))
-            .line("before", "model", thinned(&timed(&rb), STRETCHES));
+        let mut figure = Figure::new("time [s]", &format!("residual of {name}{of_unit}")).line(
+            "before",
+            "model",
+            thinned(&timed(&rb), STRETCHES),
+        );
         if found {
             figure = figure.line("after", "extended model", thinned(&timed(&ra), STRETCHES));
         }
@@ -98,9 +101,12 @@ fn spectrum(
         figure = figure.level("floor", &label, floor.std * (2.0 * dt).sqrt());
     }
     page.raw(&figure.svg());
-    page.element("p", "note",
+    page.element(
+        "p",
+        "note",
         "What stands above the noise floor is not noise. The floor is drawn as white noise of the \
-         estimated size.");
+         estimated size.",
+    );
 }
 
 fn against_inputs(

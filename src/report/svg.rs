@@ -141,13 +141,24 @@ impl Figure {
         );
         for tick in ticks(xr, self.x.1, 7) {
             let x = px(tick);
-            let _ = write!(s, "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{top}\" y2=\"{:.1}\"/><text class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
-                top + h, top + h + 16.0, label(tick, xr, self.x.1));
+            let _ = write!(
+                s,
+                "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{top}\" y2=\"{:.1}\"/><text class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+                top + h,
+                top + h + 16.0,
+                label(tick, xr, self.x.1)
+            );
         }
         for tick in ticks(yr, self.y.1, 5) {
             let y = py(tick);
-            let _ = write!(s, "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/><text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-                LEFT + w, LEFT - 6.0, y + 4.0, label(tick, yr, self.y.1));
+            let _ = write!(
+                s,
+                "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/><text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+                LEFT + w,
+                LEFT - 6.0,
+                y + 4.0,
+                label(tick, yr, self.y.1)
+            );
         }
         for (item, class, _) in &self.items {
             draw(&mut s, item, class, &px, &py, (top, h), w, (self.x.1, self.y.1));
@@ -155,15 +166,41 @@ impl Figure {
         let mut at = LEFT;
         for (item, class, text) in legend {
             let mark = match item {
-                Item::Dots(_) => format!("<circle class=\"{class} dot\" cx=\"{:.1}\" cy=\"{TOP}\" r=\"3\"/>", at + 9.0),
-                Item::Band(_) => format!("<rect class=\"{class} band\" x=\"{at:.1}\" y=\"{:.1}\" width=\"18\" height=\"8\"/>", TOP - 4.0),
-                _ => format!("<line class=\"{class} line\" x1=\"{at:.1}\" x2=\"{:.1}\" y1=\"{TOP}\" y2=\"{TOP}\"/>", at + 18.0),
+                Item::Dots(_) => format!(
+                    "<circle class=\"{class} dot\" cx=\"{:.1}\" cy=\"{TOP}\" r=\"3\"/>",
+                    at + 9.0
+                ),
+                Item::Band(_) => format!(
+                    "<rect class=\"{class} band\" x=\"{at:.1}\" y=\"{:.1}\" width=\"18\" height=\"8\"/>",
+                    TOP - 4.0
+                ),
+                _ => format!(
+                    "<line class=\"{class} line\" x1=\"{at:.1}\" x2=\"{:.1}\" y1=\"{TOP}\" y2=\"{TOP}\"/>",
+                    at + 18.0
+                ),
             };
-            let _ = write!(s, "{mark}<text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\">{}</text>", at + 24.0, TOP + 4.0, escape(text));
+            let _ = write!(
+                s,
+                "{mark}<text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+                at + 24.0,
+                TOP + 4.0,
+                escape(text)
+            );
             at += 44.0 + 6.6 * text.chars().count() as f64;
         }
-        let _ = write!(s, "<text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>", LEFT + w / 2.0, self.height - 8.0, escape(&self.x.0));
-        let _ = write!(s, "<text class=\"axis\" transform=\"translate(14 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text></svg>", top + h / 2.0, escape(&self.y.0));
+        let _ = write!(
+            s,
+            "<text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+            LEFT + w / 2.0,
+            self.height - 8.0,
+            escape(&self.x.0)
+        );
+        let _ = write!(
+            s,
+            "<text class=\"axis\" transform=\"translate(14 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text></svg>",
+            top + h / 2.0,
+            escape(&self.y.0)
+        );
         s
     }
 }
@@ -188,7 +225,8 @@ fn draw(
             for piece in points.split(|p| !seen(p.0, p.1)).filter(|piece| !piece.is_empty()) {
                 let path: Vec<String> =
                     piece.iter().map(|p| format!("{:.1},{:.1}", px(p.0), py(p.1))).collect();
-                let _ = write!(s, "<polyline class=\"{class} line\" points=\"{}\"/>", path.join(" "));
+                let _ =
+                    write!(s, "<polyline class=\"{class} line\" points=\"{}\"/>", path.join(" "));
             }
         }
         Item::Band(points) => {
@@ -203,19 +241,34 @@ fn draw(
                 let (x, y) = (px(p.0), py(p.1));
                 if p.2 > 0.0 && seen(p.0, p.1 - p.2) {
                     let clamp = |v: f64| v.clamp(top, top + h);
-                    let _ = write!(s, "<line class=\"{class} bar\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{:.1}\" y2=\"{:.1}\"/>",
-                        clamp(py(p.1 - p.2)), clamp(py(p.1 + p.2)));
+                    let _ = write!(
+                        s,
+                        "<line class=\"{class} bar\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{:.1}\" y2=\"{:.1}\"/>",
+                        clamp(py(p.1 - p.2)),
+                        clamp(py(p.1 + p.2))
+                    );
                 }
-                let _ = write!(s, "<circle class=\"{class} dot\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\"/>");
+                let _ = write!(
+                    s,
+                    "<circle class=\"{class} dot\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"3\"/>"
+                );
             }
         }
         Item::Level(value) => {
             let y = py(*value);
-            let _ = write!(s, "<line class=\"{class} line\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/>", LEFT + w);
+            let _ = write!(
+                s,
+                "<line class=\"{class} line\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/>",
+                LEFT + w
+            );
         }
         Item::Upright(value) => {
             let x = px(*value);
-            let _ = write!(s, "<line class=\"{class} line\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{top}\" y2=\"{:.1}\"/>", top + h);
+            let _ = write!(
+                s,
+                "<line class=\"{class} line\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{top}\" y2=\"{:.1}\"/>",
+                top + h
+            );
         }
     }
 }
@@ -274,7 +327,8 @@ fn ticks((low, high): (f64, f64), scale: Scale, about: usize) -> Vec<f64> {
     }
     let raw = (high - low) / about as f64;
     let power = 10f64.powf(raw.log10().floor());
-    let step = [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= raw).unwrap_or(raw);
+    let step =
+        [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= raw).unwrap_or(raw);
     let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
     (first..=last).map(|k| k as f64 * step).collect()
 }

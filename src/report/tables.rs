@@ -20,11 +20,15 @@ fn figures(page: &mut Page, finding: &Finding) {
     let mut rows = vec![];
     let mut add = |data: &str, model: &str, scores: &BTreeMap<String, Metrics>| {
         for (name, m) in scores {
-            let unit = finding.series.outputs.iter().find(|(n, _)| n == name).map_or("", |(_, u)| u);
+            let unit =
+                finding.series.outputs.iter().find(|(n, _)| n == name).map_or("", |(_, u)| u);
             rows.push(vec![
-                name.clone(), data.into(), model.into(),
+                name.clone(),
+                data.into(),
+                model.into(),
                 format!("{} {unit}", number(m.rmse, None)),
-                format!("{:.4}", m.nrmse), format!("{:.2}", m.fit_percent),
+                format!("{:.4}", m.nrmse),
+                format!("{:.2}", m.fit_percent),
             ]);
         }
     };
@@ -34,11 +38,21 @@ fn figures(page: &mut Page, finding: &Finding) {
     add("test", "extended model", &finding.after.test);
     page.table(&["output", "data", "of", "#RMSE", "#NRMSE", "#fit %"], &rows);
     for (name, floor) in &finding.noise_floor {
-        page.element("p", "note", &format!(
-            "Noise of {name}: standard deviation {}, from {}.", number(floor.std, None), floor.method));
+        page.element(
+            "p",
+            "note",
+            &format!(
+                "Noise of {name}: standard deviation {}, from {}.",
+                number(floor.std, None),
+                floor.method
+            ),
+        );
     }
-    page.element("p", "note",
-        "NRMSE is the RMSE over the measured standard deviation; fit is 100 (1 - NRMSE) per cent.");
+    page.element(
+        "p",
+        "note",
+        "NRMSE is the RMSE over the measured standard deviation; fit is 100 (1 - NRMSE) per cent.",
+    );
 }
 
 fn track_name(track: Track) -> &'static str {
@@ -50,15 +64,28 @@ fn track_name(track: Track) -> &'static str {
 
 fn other_track(page: &mut Page, finding: &Finding) {
     page.heading("If parameters are treated otherwise");
-    page.element("p", "", &format!(
-        "The above was found with {}. With {}:",
-        track_name(finding.track), track_name(finding.other_track.track)));
+    page.element(
+        "p",
+        "",
+        &format!(
+            "The above was found with {}. With {}:",
+            track_name(finding.track),
+            track_name(finding.other_track.track)
+        ),
+    );
     let other = &finding.other_track;
     if other.causes.is_empty() && other.parameters_moved.is_empty() {
-        page.element("p", "note", "nothing is named and no parameter moves by more than three standard errors.");
+        page.element(
+            "p",
+            "note",
+            "nothing is named and no parameter moves by more than three standard errors.",
+        );
     }
-    let rows: Vec<Vec<String>> =
-        other.causes.iter().map(|c| vec![c.effect.clone(), c.into.clone(), c.of.clone().unwrap_or_default()]).collect();
+    let rows: Vec<Vec<String>> = other
+        .causes
+        .iter()
+        .map(|c| vec![c.effect.clone(), c.into.clone(), c.of.clone().unwrap_or_default()])
+        .collect();
     if !rows.is_empty() {
         page.table(&["effect", "into", "of"], &rows);
     }
@@ -66,7 +93,9 @@ fn other_track(page: &mut Page, finding: &Finding) {
         .parameters_moved
         .iter()
         .map(|m| {
-            let spread = m.std_error.map_or_else(String::new, |e| format!("+- {}", number(2.0 * e, Some(2.0 * e))));
+            let spread = m
+                .std_error
+                .map_or_else(String::new, |e| format!("+- {}", number(2.0 * e, Some(2.0 * e))));
             vec![m.name.clone(), number(m.from, None), number(m.to, m.std_error), spread]
         })
         .collect();
@@ -86,7 +115,15 @@ fn ranking(page: &mut Page, finding: &Finding) {
         .ranking
         .iter()
         .take(15)
-        .map(|r| vec![r.effect.clone(), r.into.clone(), r.of.clone().unwrap_or_default(), share(r.share), format!("{:.1}", r.score)])
+        .map(|r| {
+            vec![
+                r.effect.clone(),
+                r.into.clone(),
+                r.of.clone().unwrap_or_default(),
+                share(r.share),
+                format!("{:.1}", r.score),
+            ]
+        })
         .collect();
     page.table(&["effect", "into", "of", "explains", "#score"], &rows);
 }
@@ -96,21 +133,35 @@ fn not_found(page: &mut Page, finding: &Finding) {
         return;
     }
     page.heading("Looked for and not found");
-    page.element("p", "note",
+    page.element(
+        "p",
+        "note",
         "With the smallest size of the first coefficient that would have been seen in this record; \
-         \"own\" is the share of the effect that neither parameters nor initial states imitate.");
+         \"own\" is the share of the effect that neither parameters nor initial states imitate.",
+    );
     let mut groups: BTreeMap<&str, Vec<&NotFound>> = BTreeMap::new();
     for entry in &finding.not_found {
         groups.entry(&entry.effect).or_default().push(entry);
     }
     for (effect, entries) in groups {
-        page.raw(&format!("<details><summary>{} ({})</summary>", super::svg::escape(effect), entries.len()));
+        page.raw(&format!(
+            "<details><summary>{} ({})</summary>",
+            super::svg::escape(effect),
+            entries.len()
+        ));
         let rows: Vec<Vec<String>> = entries
             .iter()
             .map(|e| {
                 let smallest = e.smallest_visible.map_or_else(
-                    || "not stated".into(), |s| format!("{} {}", number(s, None), e.unit));
-                vec![e.into.clone(), e.of.clone().unwrap_or_default(), smallest, format!("{:.2}", e.kappa)]
+                    || "not stated".into(),
+                    |s| format!("{} {}", number(s, None), e.unit),
+                );
+                vec![
+                    e.into.clone(),
+                    e.of.clone().unwrap_or_default(),
+                    smallest,
+                    format!("{:.2}", e.kappa),
+                ]
             })
             .collect();
         page.table(&["into", "of", "#smallest seen", "#own"], &rows);
@@ -121,12 +172,21 @@ fn not_found(page: &mut Page, finding: &Finding) {
 fn left(page: &mut Page, finding: &Finding) {
     page.heading("What is left");
     let dependence = finding.left.dependence;
-    page.element("p", "", &format!(
-        "Dependence of what is left on the inputs: score {dependence:.1} ({}).",
-        if dependence > 3.0 { "it is not only noise" } else { "below 3: it may well be noise" }));
+    page.element(
+        "p",
+        "",
+        &format!(
+            "Dependence of what is left on the inputs: score {dependence:.1} ({}).",
+            if dependence > 3.0 { "it is not only noise" } else { "below 3: it may well be noise" }
+        ),
+    );
     for (name, score) in &finding.left.whiteness {
         let word = if *score < 3.0 { "white" } else { "coloured" };
-        page.element("p", "note", &format!("Residual of {name}: {word} (Ljung-Box score {score:.1})."));
+        page.element(
+            "p",
+            "note",
+            &format!("Residual of {name}: {word} (Ljung-Box score {score:.1})."),
+        );
     }
     for remark in &finding.remarks {
         page.element("p", "", remark);

@@ -112,7 +112,8 @@ pub(crate) fn normal_score(t: f64, freedom: usize) -> f64 {
     if !t.is_finite() {
         return if t.is_nan() { 0.0 } else { HIGHEST.copysign(t) };
     }
-    let (Ok(student), Ok(normal)) = (StudentsT::new(0.0, 1.0, freedom.max(1) as f64), Normal::new(0.0, 1.0))
+    let (Ok(student), Ok(normal)) =
+        (StudentsT::new(0.0, 1.0, freedom.max(1) as f64), Normal::new(0.0, 1.0))
     else {
         return 0.0;
     };

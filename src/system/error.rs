@@ -6,7 +6,9 @@ use crate::fault::{Explain, Kind, Place, nearest};
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SystemError {
     /// An effect enters a place that the model does not have.
-    #[error("effect {index} enters `{into}`, which is no channel, input, output or parameter of this model")]
+    #[error(
+        "effect {index} enters `{into}`, which is no channel, input, output or parameter of this model"
+    )]
     NoChannel {
         /// Position in the list of effects, from 0.
         index: usize,
@@ -16,7 +18,9 @@ pub enum SystemError {
         known: Vec<String>,
     },
     /// An effect depends on something that the model does not have.
-    #[error("effect {index} depends on `{of}`, which is no coordinate, input or output of this model")]
+    #[error(
+        "effect {index} depends on `{of}`, which is no coordinate, input or output of this model"
+    )]
     NoCoordinate {
         /// Position in the list of effects, from 0.
         index: usize,
@@ -34,7 +38,9 @@ pub enum SystemError {
         effect: String,
     },
     /// An effect that works only in the path of an input or output was put elsewhere.
-    #[error("effect {index} ({effect}) works on the path of an input or output, not into `{into}` of `{of}`")]
+    #[error(
+        "effect {index} ({effect}) works on the path of an input or output, not into `{into}` of `{of}`"
+    )]
     NotOnPath {
         /// Position in the list of effects.
         index: usize,
@@ -46,7 +52,9 @@ pub enum SystemError {
         of: String,
     },
     /// An effect needs the rate of a coordinate that the model does not have.
-    #[error("effect {index} ({effect}) needs the rate of change of `{of}`, which is not among the model's states and coordinates")]
+    #[error(
+        "effect {index} ({effect}) needs the rate of change of `{of}`, which is not among the model's states and coordinates"
+    )]
     NoRate {
         /// Position in the list of effects.
         index: usize,

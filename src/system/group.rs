@@ -225,12 +225,5 @@ fn sight<'b, R: EffectNumber>(
     outputs: &'b [R],
 ) -> Sight<'b, R> {
     let n = plan.sizes;
-    Sight {
-        x: at.x,
-        u: at.u,
-        coordinates,
-        outputs,
-        time: at.time,
-        sizes: [n.x, n.u, n.z, n.y],
-    }
+    Sight { x: at.x, u: at.u, coordinates, outputs, time: at.time, sizes: [n.x, n.u, n.z, n.y] }
 }

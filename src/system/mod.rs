@@ -16,8 +16,8 @@ mod placed;
 mod plan;
 mod rates;
 mod sampling;
-mod wiring;
 mod tables;
+mod wiring;
 
 use std::sync::Arc;
 

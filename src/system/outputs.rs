@@ -2,8 +2,8 @@
 
 use super::inputs::{Memory, curve};
 use super::plan::{Plan, Way};
-use super::wiring::{EffectNumber, Wiring};
 use super::tables::Origin;
+use super::wiring::{EffectNumber, Wiring};
 
 /// One effect on one output.
 struct Entry<R> {

@@ -171,12 +171,7 @@ impl Plan {
         Ok(())
     }
 
-    fn way(
-        &self,
-        index: usize,
-        placed: &Placed,
-        card: &EffectCard,
-    ) -> Result<Way, SystemError> {
+    fn way(&self, index: usize, placed: &Placed, card: &EffectCard) -> Result<Way, SystemError> {
         let effect = || placed.effect.typetag_name().to_string();
         let parameter = self.signals.parameters.iter().position(|p| p.name == placed.into);
         match (card.mechanism, parameter, card.needs) {
@@ -236,7 +231,11 @@ impl Plan {
             Needs::CoordinateWithRate => {
                 let of = || placed.of.clone().unwrap_or_default();
                 let rate = self.rates.rate(first);
-                Some(rate.ok_or_else(|| SystemError::NoRate { index, effect: effect(), of: of() })?)
+                Some(rate.ok_or_else(|| SystemError::NoRate {
+                    index,
+                    effect: effect(),
+                    of: of(),
+                })?)
             }
             Needs::Motion => self.motion(first),
             _ => None,

@@ -29,7 +29,9 @@ pub(crate) fn points(law: &dyn Law, count: usize) -> Vec<Point> {
         (0..n)
             .map(|i| {
                 let centre = centre.get(i).copied().unwrap_or(0.0);
-                centre + (0.1 + random.random::<f64>()) * if centre == 0.0 { 1.0 } else { 0.2 * centre.abs() }
+                centre
+                    + (0.1 + random.random::<f64>())
+                        * if centre == 0.0 { 1.0 } else { 0.2 * centre.abs() }
             })
             .collect()
     };

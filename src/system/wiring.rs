@@ -285,7 +285,8 @@ impl<R: EffectNumber> Wiring<R> {
                 for (l, route) in routes.iter().enumerate() {
                     let (pack, lane) = (l / R::LANES, l % R::LANES);
                     let Some((is_own, i)) = route.as_ref().and_then(|r| r.place) else { continue };
-                    let to = if is_own { &mut own[pack * nw + i] } else { &mut inputs[pack * nu + i] };
+                    let to =
+                        if is_own { &mut own[pack * nw + i] } else { &mut inputs[pack * nu + i] };
                     let sum = to.lane(lane) + self.w[pack].lane(lane);
                     to.set_lane(lane, sum);
                 }

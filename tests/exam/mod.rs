@@ -188,7 +188,13 @@ pub fn placed(into: &str, of: Option<&str>, effect: &str) -> String {
 pub fn names(finding: &Finding) -> String {
     let causes = finding.causes.iter().map(|c| {
         let others: Vec<String> = c.indistinguishable.iter().map(ToString::to_string).collect();
-        format!("{}>{}<{} ({})", c.effect, c.into, c.of.as_deref().unwrap_or("-"), others.join(", "))
+        format!(
+            "{}>{}<{} ({})",
+            c.effect,
+            c.into,
+            c.of.as_deref().unwrap_or("-"),
+            others.join(", ")
+        )
     });
     causes.collect::<Vec<_>>().join(" + ")
 }

@@ -35,10 +35,7 @@ pub(super) fn separator(header: &str) -> char {
     }
     // of equals the first, and a comma where there is none at all
     let most = counts.iter().max().copied().unwrap_or(0);
-    let chosen = SEPARATORS
-        .iter()
-        .zip(counts)
-        .find(|(_, count)| most > 0 && *count == most);
+    let chosen = SEPARATORS.iter().zip(counts).find(|(_, count)| most > 0 && *count == most);
     chosen.map_or(',', |(separator, _)| *separator)
 }
 
@@ -86,11 +83,7 @@ pub(super) fn number(field: &str) -> Result<f64, CellProblem> {
         Err(_) => {
             // 1,5 as well as 1,234.5: a comma has no place in a number
             let comma = field.contains(',') && field.replace(',', "").parse::<f64>().is_ok();
-            Err(if comma {
-                CellProblem::DecimalComma
-            } else {
-                CellProblem::Text
-            })
+            Err(if comma { CellProblem::DecimalComma } else { CellProblem::Text })
         }
     }
 }
@@ -113,10 +106,7 @@ mod tests {
     fn quotes_hold_separators_and_doubled_quotes() {
         let fields = |line| quoted(line, ',').map(|f| f.join("|"));
         assert_eq!(fields("\"a,b\",c").as_deref(), Ok("a,b|c"));
-        assert_eq!(
-            fields("\"a \"\"b\"\"\", \"c\" ,").as_deref(),
-            Ok("a \"b\"|c|")
-        );
+        assert_eq!(fields("\"a \"\"b\"\"\", \"c\" ,").as_deref(), Ok("a \"b\"|c|"));
         assert_eq!(fields("a,\"b"), Err(2));
     }
 

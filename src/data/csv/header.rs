@@ -16,58 +16,31 @@ pub(super) fn names(
 ) -> Result<(Vec<Column>, Tally), DataError> {
     if header.contains('\0') {
         let at = place(source, Some(line), None);
-        return Err(DataError::NotUtf8 {
-            at,
-            byte: 0,
-            utf16: true,
-        });
+        return Err(DataError::NotUtf8 { at, byte: 0, utf16: true });
     }
-    let mut fields = quoted(header, separator).map_err(|column| DataError::Quote {
-        at: place(source, Some(line), Some(column)),
-    })?;
+    let mut fields = quoted(header, separator)
+        .map_err(|column| DataError::Quote { at: place(source, Some(line), Some(column)) })?;
     let is_number = |field: &str| !matches!(number(field.trim()), Err(CellProblem::Text));
     if fields.iter().all(|field| is_number(field)) {
         let at = place(source, Some(line), None);
-        return Err(DataError::NoHeader {
-            at,
-            found: shortened(header.trim()),
-            comment,
-        });
+        return Err(DataError::NoHeader { at, found: shortened(header.trim()), comment });
     }
     let mut trailing = Tally::default();
     while fields.last().is_some_and(|field| field.trim().is_empty()) {
         fields.pop();
-        trailing = Tally {
-            count: 1,
-            first_line: line,
-        };
+        trailing = Tally { count: 1, first_line: line };
     }
     let mut columns: Vec<Column> = Vec::with_capacity(fields.len());
     for (k, field) in fields.iter().enumerate() {
         let Some((name, unit)) = unit::header(field) else {
             let at = place(source, Some(line), Some(k + 1));
-            return Err(DataError::Header {
-                at,
-                found: shortened(field.trim()),
-            });
+            return Err(DataError::Header { at, found: shortened(field.trim()) });
         };
-        let column = Column {
-            name,
-            unit,
-            number: k + 1,
-            values: Vec::new(),
-            fault: None,
-        };
-        if let Some(first) = columns
-            .iter()
-            .find(|c| !c.name.is_empty() && c.name == column.name)
-        {
+        let column = Column { name, unit, number: k + 1, values: Vec::new(), fault: None };
+        if let Some(first) = columns.iter().find(|c| !c.name.is_empty() && c.name == column.name) {
             let mut at = place(source, Some(line), Some(k + 1));
             at.key = Some(column.name);
-            return Err(DataError::DuplicateColumn {
-                at,
-                first: first.number,
-            });
+            return Err(DataError::DuplicateColumn { at, first: first.number });
         }
         columns.push(column);
     }
@@ -91,9 +64,5 @@ pub(super) fn not_utf8(bytes: &[u8], valid_up_to: usize, source: &str) -> DataEr
             .map(|(name, _)| name);
     }
     let utf16 = bytes.starts_with(b"\xFF\xFE") || bytes.starts_with(b"\xFE\xFF");
-    DataError::NotUtf8 {
-        at,
-        byte: bytes.get(valid_up_to).copied().unwrap_or_default(),
-        utf16,
-    }
+    DataError::NotUtf8 { at, byte: bytes.get(valid_up_to).copied().unwrap_or_default(), utf16 }
 }

@@ -54,11 +54,7 @@ impl FilteredNoise {
         }
         let mut sections = butterworth(self.order, share);
         let mut random = Random::new(seed);
-        let mut next = || {
-            sections
-                .iter_mut()
-                .fold(random.normal(), |x, s| s.filter(x))
-        };
+        let mut next = || sections.iter_mut().fold(random.normal(), |x, s| s.filter(x));
         // the slowest pole has forgotten the start to a millionth
         let slowest = 2.0 * PI * share * (PI / (2 * self.order) as f64).sin();
         for _ in 0..(14.0 / slowest).ceil() as usize {
@@ -97,10 +93,7 @@ fn butterworth(order: usize, share: f64) -> Vec<Section> {
         let gain = k * k * scale;
         Section {
             b: [gain, 2.0 * gain, gain],
-            a: [
-                2.0 * (k * k - 1.0) * scale,
-                (1.0 - damping * k + k * k) * scale,
-            ],
+            a: [2.0 * (k * k - 1.0) * scale, (1.0 - damping * k + k * k) * scale],
             ..Section::default()
         }
     };
@@ -135,60 +128,31 @@ mod tests {
     fn the_gain_is_that_of_butterworth() {
         for order in 1..=12 {
             assert!((gain(order, 0.05, 0.0) - 1.0).abs() < 1e-9, "order {order}");
-            assert!(
-                (gain(order, 0.05, 0.05) - 0.5_f64.sqrt()).abs() < 1e-9,
-                "order {order}"
-            );
+            assert!((gain(order, 0.05, 0.05) - 0.5_f64.sqrt()).abs() < 1e-9, "order {order}");
             // (1 + (tan(pi f) / tan(pi f_c))^2N)^-1/2
             let ratio = (PI * 0.1).tan() / (PI * 0.05).tan();
             let expected = 1.0 / (1.0 + ratio.powi(2 * order as i32)).sqrt();
-            assert!(
-                (gain(order, 0.05, 0.1) - expected).abs() < 1e-9,
-                "order {order}"
-            );
+            assert!((gain(order, 0.05, 0.1) - expected).abs() < 1e-9, "order {order}");
         }
     }
 
     #[test]
     fn there_is_no_run_in_at_the_start() {
-        let noise = FilteredNoise {
-            cutoff: 0.01,
-            order: 2,
-            rms: 1.0,
-        };
-        let power: f64 = (0..400)
-            .map(|seed| noise.generate(20_000, 0.1, seed).unwrap()[0].powi(2))
-            .sum();
+        let noise = FilteredNoise { cutoff: 0.01, order: 2, rms: 1.0 };
+        let power: f64 =
+            (0..400).map(|seed| noise.generate(20_000, 0.1, seed).unwrap()[0].powi(2)).sum();
         assert!((power / 400.0 - 1.0).abs() < 0.3, "{}", power / 400.0);
     }
 
     #[test]
     fn settings_are_checked() {
-        let good = FilteredNoise {
-            cutoff: 1.0,
-            order: 2,
-            rms: 1.0,
-        };
+        let good = FilteredNoise { cutoff: 1.0, order: 2, rms: 1.0 };
         assert!(good.generate(0, 0.1, 0).unwrap().is_empty());
         for cutoff in [0.0, 5.0, -1.0, f64::NAN, 1e-6] {
-            assert!(
-                FilteredNoise {
-                    cutoff,
-                    ..good.clone()
-                }
-                .generate(9, 0.1, 0)
-                .is_err()
-            );
+            assert!(FilteredNoise { cutoff, ..good.clone() }.generate(9, 0.1, 0).is_err());
         }
         for order in [0, 13, usize::MAX] {
-            assert!(
-                FilteredNoise {
-                    order,
-                    ..good.clone()
-                }
-                .generate(9, 0.1, 0)
-                .is_err()
-            );
+            assert!(FilteredNoise { order, ..good.clone() }.generate(9, 0.1, 0).is_err());
         }
     }
 }

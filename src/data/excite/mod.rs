@@ -63,9 +63,7 @@ impl Excitation {
 /// assert_eq!(lacuna::data::crest_factor(&[3.0, -3.0]), 1.0);
 /// ```
 pub fn crest_factor(signal: &[f64]) -> f64 {
-    let peak = signal
-        .iter()
-        .fold(0.0_f64, |peak, value| peak.max(value.abs()));
+    let peak = signal.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
     peak / rms(signal)
 }
 
@@ -89,11 +87,7 @@ pub(super) fn samples(key: &str, n: usize) -> Result<usize, DataError> {
     if n <= MOST {
         Ok(n)
     } else {
-        Err(DataError::setting(
-            key,
-            n as f64,
-            "at most 268435456 samples",
-        ))
+        Err(DataError::setting(key, n as f64, "at most 268435456 samples"))
     }
 }
 
@@ -111,9 +105,8 @@ mod tests {
 
     #[test]
     fn crest_factor_of_a_sine_is_the_root_of_two() {
-        let sine: Vec<f64> = (0..1000)
-            .map(|k| (std::f64::consts::TAU * k as f64 / 1000.0).sin())
-            .collect();
+        let sine: Vec<f64> =
+            (0..1000).map(|k| (std::f64::consts::TAU * k as f64 / 1000.0).sin()).collect();
         assert!((crest_factor(&sine) - 2.0_f64.sqrt()).abs() < 1e-12);
         assert!(crest_factor(&[]).is_nan());
     }
@@ -130,10 +123,7 @@ mod tests {
         ] {
             let excitation: Excitation = toml::from_str(text).unwrap();
             let u = excitation.generate(200, 0.1, 1).unwrap();
-            assert!(
-                u.len() == 200 && u.iter().all(|value| value.is_finite()),
-                "{text}"
-            );
+            assert!(u.len() == 200 && u.iter().all(|value| value.is_finite()), "{text}");
             assert_eq!(u, excitation.generate(200, 0.1, 1).unwrap());
             assert_eq!(u[..50], excitation.generate(200, 0.1, 1).unwrap()[..50]);
             assert!(excitation.generate(usize::MAX, 0.1, 1).is_err());

@@ -140,11 +140,7 @@ impl Multisine {
     fn draw_lines(&self, random: &mut Random) -> Result<Vec<usize>, DataError> {
         let highest = samples("period", self.period)?.saturating_sub(1) / 2;
         if highest == 0 {
-            return Err(DataError::setting(
-                "period",
-                self.period as f64,
-                "at least 3 samples",
-            ));
+            return Err(DataError::setting("period", self.period as f64, "at least 3 samples"));
         }
         let odd = |from: usize, to: Option<usize>| {
             (from..=to.unwrap_or(highest)).filter(|line| line % 2 == 1)
@@ -156,9 +152,7 @@ impl Multisine {
             | Lines::OddRandom { from, to, .. } => Some((*from, to.unwrap_or(highest))),
         };
         if let Some(outside) = band.and_then(|(from, to)| {
-            [from, to]
-                .into_iter()
-                .find(|line| *line == 0 || *line > highest || from > to)
+            [from, to].into_iter().find(|line| *line == 0 || *line > highest || from > to)
         }) {
             let rule = "a band of lines from 1 to below half the period";
             return Err(DataError::setting("lines", outside as f64, rule));
@@ -180,14 +174,8 @@ impl Multisine {
             Lines::List(lines) => {
                 let mut lines = lines.clone();
                 lines.sort_unstable();
-                let twice = lines
-                    .windows(2)
-                    .find(|pair| pair[0] == pair[1])
-                    .map(|pair| pair[0]);
-                let outside = lines
-                    .iter()
-                    .copied()
-                    .find(|line| *line == 0 || *line > highest);
+                let twice = lines.windows(2).find(|pair| pair[0] == pair[1]).map(|pair| pair[0]);
+                let outside = lines.iter().copied().find(|line| *line == 0 || *line > highest);
                 if let Some(line) = twice.or(outside) {
                     let rule = "a line from 1 to below half the period, listed once";
                     return Err(DataError::setting("lines", line as f64, rule));
@@ -237,12 +225,8 @@ impl Period {
         let mut spectrum = self.to_lines.make_output_vec();
         for iteration in 0..iterations {
             let depth = 0.75 + 0.24 * iteration as f64 / iterations as f64;
-            let peak = signal
-                .iter()
-                .fold(0.0_f64, |peak, value| peak.max(value.abs()));
-            signal
-                .iter_mut()
-                .for_each(|x| *x = x.clamp(-depth * peak, depth * peak));
+            let peak = signal.iter().fold(0.0_f64, |peak, value| peak.max(value.abs()));
+            signal.iter_mut().for_each(|x| *x = x.clamp(-depth * peak, depth * peak));
             let _ = self.to_lines.process(&mut signal, &mut spectrum);
             for (line, phase) in lines.iter().zip(&mut phases) {
                 *phase = spectrum[*line].arg();

@@ -92,11 +92,7 @@ impl Prbs {
                 Some(register) => register.next(),
                 None => random.below(2) == 1,
             };
-            let level = if high {
-                self.amplitude
-            } else {
-                -self.amplitude
-            };
+            let level = if high { self.amplitude } else { -self.amplitude };
             signal.resize(n.min(signal.len().saturating_add(self.clock)), level);
         }
         Ok(signal)
@@ -117,18 +113,11 @@ impl Register {
             DataError::setting("order", f64::from(order), "a whole number from 2 to 24")
         })?;
         let states = (1_u64 << order) - 1;
-        Ok(Self {
-            state: 1 + random.below(states) as u32,
-            order,
-            taps,
-        })
+        Ok(Self { state: 1 + random.below(states) as u32, order, taps })
     }
 
     fn next(&mut self) -> bool {
-        let fed_back = self
-            .taps
-            .iter()
-            .fold(0, |sum, tap| sum ^ (self.state >> (tap - 1)));
+        let fed_back = self.taps.iter().fold(0, |sum, tap| sum ^ (self.state >> (tap - 1)));
         self.state = ((self.state << 1) | (fed_back & 1)) & ((1 << self.order) - 1);
         self.state & 1 == 1
     }
@@ -158,18 +147,9 @@ mod tests {
     #[test]
     fn levels_are_held_for_the_clock() {
         for sequence in [Sequence::Telegraph {}, Sequence::MaximumLength { order: 9 }] {
-            let u = Prbs {
-                amplitude: 1.5,
-                clock: 5,
-                sequence,
-            }
-            .generate(1003, 0.1, 3)
-            .unwrap();
+            let u = Prbs { amplitude: 1.5, clock: 5, sequence }.generate(1003, 0.1, 3).unwrap();
             assert_eq!(u.len(), 1003);
-            assert!(
-                u.chunks(5)
-                    .all(|held| held.iter().all(|v| v.abs() == 1.5 && *v == held[0]))
-            );
+            assert!(u.chunks(5).all(|held| held.iter().all(|v| v.abs() == 1.5 && *v == held[0])));
             let changes = u.windows(2).filter(|pair| pair[0] != pair[1]).count();
             assert!((70..130).contains(&changes), "{changes}");
         }
@@ -177,47 +157,13 @@ mod tests {
 
     #[test]
     fn settings_are_checked() {
-        let good = Prbs {
-            amplitude: 1.0,
-            clock: 1,
-            sequence: Sequence::Telegraph {},
-        };
-        assert!(
-            Prbs {
-                amplitude: -1.0,
-                ..good.clone()
-            }
-            .generate(9, 0.1, 0)
-            .is_err()
-        );
-        assert!(
-            Prbs {
-                clock: 0,
-                ..good.clone()
-            }
-            .generate(9, 0.1, 0)
-            .is_err()
-        );
+        let good = Prbs { amplitude: 1.0, clock: 1, sequence: Sequence::Telegraph {} };
+        assert!(Prbs { amplitude: -1.0, ..good.clone() }.generate(9, 0.1, 0).is_err());
+        assert!(Prbs { clock: 0, ..good.clone() }.generate(9, 0.1, 0).is_err());
         for order in [0, 1, 25, u32::MAX] {
             let sequence = Sequence::MaximumLength { order };
-            assert!(
-                Prbs {
-                    sequence,
-                    ..good.clone()
-                }
-                .generate(9, 0.1, 0)
-                .is_err()
-            );
+            assert!(Prbs { sequence, ..good.clone() }.generate(9, 0.1, 0).is_err());
         }
-        assert_eq!(
-            Prbs {
-                clock: usize::MAX,
-                ..good
-            }
-            .generate(9, 0.1, 0)
-            .unwrap()
-            .len(),
-            9
-        );
+        assert_eq!(Prbs { clock: usize::MAX, ..good }.generate(9, 0.1, 0).unwrap().len(), 9);
     }
 }

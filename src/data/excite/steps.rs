@@ -74,20 +74,11 @@ mod tests {
 
     #[test]
     fn levels_and_holds_keep_their_ranges() {
-        let steps = Steps {
-            low: -2.0,
-            high: 4.0,
-            hold_min: 3,
-            hold_max: 7,
-        };
+        let steps = Steps { low: -2.0, high: 4.0, hold_min: 3, hold_max: 7 };
         let u = steps.generate(50_000, 0.1, 1).unwrap();
         let runs: Vec<_> = u.chunk_by(|a, b| a == b).collect();
         // the last one may be cut
-        assert!(
-            runs[..runs.len() - 1]
-                .iter()
-                .all(|run| (3..=7).contains(&run.len()))
-        );
+        assert!(runs[..runs.len() - 1].iter().all(|run| (3..=7).contains(&run.len())));
         for length in 3..=7 {
             let share = runs.iter().filter(|run| run.len() == length).count() as f64;
             assert!((share / runs.len() as f64 - 0.2).abs() < 0.02);
@@ -98,42 +89,15 @@ mod tests {
 
     #[test]
     fn settings_are_checked() {
-        let good = Steps {
-            low: 0.0,
-            high: 1.0,
-            hold_min: 1,
-            hold_max: 2,
-        };
+        let good = Steps { low: 0.0, high: 1.0, hold_min: 1, hold_max: 2 };
         for bad in [
-            Steps {
-                low: 2.0,
-                ..good.clone()
-            },
-            Steps {
-                low: f64::NAN,
-                ..good.clone()
-            },
-            Steps {
-                high: f64::INFINITY,
-                ..good.clone()
-            },
-            Steps {
-                low: -f64::MAX,
-                high: f64::MAX,
-                ..good.clone()
-            },
-            Steps {
-                hold_min: 0,
-                ..good.clone()
-            },
-            Steps {
-                hold_min: 3,
-                ..good.clone()
-            },
-            Steps {
-                hold_max: usize::MAX,
-                ..good.clone()
-            },
+            Steps { low: 2.0, ..good.clone() },
+            Steps { low: f64::NAN, ..good.clone() },
+            Steps { high: f64::INFINITY, ..good.clone() },
+            Steps { low: -f64::MAX, high: f64::MAX, ..good.clone() },
+            Steps { hold_min: 0, ..good.clone() },
+            Steps { hold_min: 3, ..good.clone() },
+            Steps { hold_max: usize::MAX, ..good.clone() },
         ] {
             assert!(bad.generate(9, 0.1, 0).is_err(), "{bad:?}");
         }

@@ -15,12 +15,7 @@ pub(super) struct Product {
 
 impl Product {
     fn one() -> Self {
-        Self {
-            powers: BTreeMap::new(),
-            numerator: 1.0,
-            denominator: 1.0,
-            scale: 1.0,
-        }
+        Self { powers: BTreeMap::new(), numerator: 1.0, denominator: 1.0, scale: 1.0 }
     }
 
     pub fn parse(text: &str) -> Option<Self> {
@@ -29,10 +24,7 @@ impl Product {
             return Some(product);
         }
         let text = text.replace("**", "^");
-        let mut reader = Reader {
-            rest: text.trim(),
-            depth: 0,
-        };
+        let mut reader = Reader { rest: text.trim(), depth: 0 };
         reader.product(&mut product, 1)?;
         reader.rest.is_empty().then_some(product)
     }
@@ -68,9 +60,7 @@ impl<'a> Reader<'a> {
     fn product(&mut self, into: &mut Product, sign: i32) -> Option<()> {
         let mut power_sign = sign;
         loop {
-            self.rest = self
-                .rest
-                .trim_start_matches([' ', '\t', '*', '·', '⋅', '×', '.']);
+            self.rest = self.rest.trim_start_matches([' ', '\t', '*', '·', '⋅', '×', '.']);
             match self.rest.chars().next() {
                 None | Some(')') => return Some(()),
                 Some('/') => {
@@ -118,16 +108,8 @@ impl<'a> Reader<'a> {
         self.rest = self.rest.strip_prefix(')')?;
         self.depth -= 1;
         let power = sign * self.power()?;
-        let bases = inner
-            .powers
-            .iter()
-            .map(|(base, power)| (base.as_str(), *power));
-        into.multiply(
-            bases,
-            (inner.numerator, inner.denominator),
-            inner.scale,
-            power,
-        );
+        let bases = inner.powers.iter().map(|(base, power)| (base.as_str(), *power));
+        into.multiply(bases, (inner.numerator, inner.denominator), inner.scale, power);
         Some(())
     }
 
@@ -140,25 +122,15 @@ impl<'a> Reader<'a> {
 
     /// The power behind a factor: `^2`, `^-2`, `^(-2)`, `2`, `-2`, `²`, `⁻²`, or 1.
     fn power(&mut self) -> Option<i32> {
-        let caret = self
-            .rest
-            .strip_prefix('^')
-            .map(|rest| self.rest = rest)
-            .is_some();
-        let group = caret
-            && self
-                .rest
-                .strip_prefix('(')
-                .map(|rest| self.rest = rest)
-                .is_some();
+        let caret = self.rest.strip_prefix('^').map(|rest| self.rest = rest).is_some();
+        let group = caret && self.rest.strip_prefix('(').map(|rest| self.rest = rest).is_some();
         let raised = self.take(|c| "⁻⁰¹²³⁴⁵⁶⁷⁸⁹".contains(c));
         let digits: String = if raised.is_empty() {
             let signed = self.rest.strip_prefix(['-', '+']).unwrap_or(self.rest);
             if !signed.starts_with(|c: char| c.is_ascii_digit()) {
                 return if caret { None } else { Some(1) };
             }
-            self.take(|c| c.is_ascii_digit() || "+-".contains(c))
-                .to_owned()
+            self.take(|c| c.is_ascii_digit() || "+-".contains(c)).to_owned()
         } else {
             let plain = "-0123456789";
             raised

@@ -15,13 +15,7 @@ pub(super) struct Part<'a> {
 
 /// A symbol of the table: names, base units, scale of time or angle, other scale, and
 /// whether prefixes may stand before its first name.
-type Symbol = (
-    &'static [&'static str],
-    &'static [(&'static str, i32)],
-    (f64, f64),
-    f64,
-    Prefix,
-);
+type Symbol = (&'static [&'static str], &'static [(&'static str, i32)], (f64, f64), f64, Prefix);
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Prefix {
@@ -102,11 +96,7 @@ pub(super) fn resolve(symbol: &str) -> Vec<Part<'_>> {
     // `Nm`, `kNm`, `Nms`: the reading with the fewest prefixes, then the fewest factors
     match split(symbol, &mut Vec::new()) {
         Some((_, parts)) => parts,
-        None => vec![Part {
-            bases: vec![(symbol, 1)],
-            free: ONE,
-            scale: 1.0,
-        }],
+        None => vec![Part { bases: vec![(symbol, 1)], free: ONE, scale: 1.0 }],
     }
 }
 
@@ -114,30 +104,17 @@ pub(super) fn resolve(symbol: &str) -> Vec<Part<'_>> {
 fn known(symbol: &str) -> Option<(Part<'static>, bool)> {
     let find = |name: &str| SYMBOLS.iter().find(|(names, ..)| names.contains(&name));
     if let Some((_, bases, free, scale, prefix)) = find(symbol) {
-        let part = Part {
-            bases: bases.to_vec(),
-            free: *free,
-            scale: *scale,
-        };
+        let part = Part { bases: bases.to_vec(), free: *free, scale: *scale };
         return Some((part, *prefix == Has));
     }
-    let (_, factor) = PREFIXES
-        .iter()
-        .find(|(prefix, _)| symbol.starts_with(*prefix))?;
+    let (_, factor) = PREFIXES.iter().find(|(prefix, _)| symbol.starts_with(*prefix))?;
     let stem = symbol.get(symbol.chars().next()?.len_utf8()..)?;
     let (_, bases, free, scale, prefix) = find(stem)?;
     // a short name only: `mmetre` is no unit
     if *prefix != Takes || stem.chars().count() > 3 {
         return None;
     }
-    Some((
-        Part {
-            bases: bases.to_vec(),
-            free: *free,
-            scale: scale * factor,
-        },
-        true,
-    ))
+    Some((Part { bases: bases.to_vec(), free: *free, scale: scale * factor }, true))
 }
 
 /// Splits a run of letters into known symbols, none of them twice: one writes `m2`, not
