@@ -1,6 +1,7 @@
 //! What the terminal shows: text, a bar, and how Ctrl-C is heard.
 
 use std::io::{IsTerminal, Write};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -17,8 +18,9 @@ pub struct Look {
     /// One JSON document on stdout.
     pub json: bool,
     quiet: bool,
-    /// More text is wanted.
-    pub verbose: bool,
+    /// Every step is to be told in a line of its own.
+    verbose: bool,
+    last: Mutex<String>,
     /// stderr is a terminal that takes colour and bars.
     lively: bool,
     bar: ProgressBar,
@@ -41,7 +43,8 @@ impl Look {
         let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("━━╌"));
         let (json, quiet, verbose) = (common.json, common.quiet, common.verbose);
-        Self { json, quiet, verbose, lively, bar, started: Instant::now() }
+        let last = Mutex::default();
+        Self { json, quiet, verbose, last, lively, bar, started: Instant::now() }
     }
 
     /// Text for people.
@@ -98,6 +101,13 @@ impl Look {
 
 impl Watch for Look {
     fn tell(&self, done: f64, doing: &str) {
+        if self.verbose
+            && let Ok(mut last) = self.last.lock()
+            && *last != doing
+        {
+            *last = doing.to_string();
+            self.say(&format!("{:7.1} s  {doing}", self.started.elapsed().as_secs_f64()));
+        }
         self.bar.set_position((1000.0 * done) as u64);
         let spent = self.started.elapsed();
         // an estimate from a few per cent is a guess, and is not shown

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::candidate::{Candidate, Preference, Wire};
 use super::nominal::Nominal;
-use super::problem::{Grain, Model, Problem};
+use super::problem::{Model, Problem};
 use crate::effect::{
     CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, SignRule, View, curve,
 };
@@ -64,16 +64,16 @@ pub(crate) fn library(
             continue;
         }
         if declared.places.parameter {
-            builder.parameters(card.name, &shape, &declared, model, allowed);
+            builder.parameters(card.name, shape.as_ref(), &declared, model, allowed);
         }
-        builder.paths(card.name, &shape, &declared);
+        builder.paths(card.name, shape.as_ref(), &declared);
         if declared.places.channel {
             for group in &groups {
-                builder.into_channel(card.name, &shape, &declared, group, &sources);
+                builder.channel_paths(card.name, shape.as_ref(), &declared, group, &sources);
             }
         }
         if declared.places.beside {
-            builder.beside(card.name, &shape, &declared);
+            builder.beside(card.name, shape.as_ref(), &declared);
         }
     }
     builder.found.into_iter().map(Arc::new).collect()
@@ -127,7 +127,7 @@ impl Builder<'_, '_> {
     fn parameters(
         &mut self,
         name: &'static str,
-        shape: &Box<dyn CandidateEffect>,
+        shape: &dyn CandidateEffect,
         card: &EffectCard,
         model: &Model,
         allowed: &Allowed,
@@ -150,7 +150,7 @@ impl Builder<'_, '_> {
             let range = if changes { (floor - value, ceiling - value) } else { free };
             self.found.push(Candidate {
                 effect: name,
-                shape: shape.clone(),
+                shape: shape.boxed(),
                 wire: if changes { Wire::Parameter(p) } else { Wire::Drift(p) },
                 into: parameter.name.clone(),
                 of: (!changes).then(|| "time".into()),
@@ -179,7 +179,7 @@ impl Builder<'_, '_> {
     }
 
     /// Into inputs and outputs, on their own path, or of nothing, or of time.
-    fn paths(&mut self, name: &'static str, shape: &Box<dyn CandidateEffect>, card: &EffectCard) {
+    fn paths(&mut self, name: &'static str, shape: &dyn CandidateEffect, card: &EffectCard) {
         let base = self.problem.base.clone();
         for (target, (_, origin)) in base.targets.entries.iter().enumerate() {
             let wanted = match origin {
@@ -203,10 +203,10 @@ impl Builder<'_, '_> {
     }
 
     /// Into one group of channels that push the same way.
-    fn into_channel(
+    fn channel_paths(
         &mut self,
         name: &'static str,
-        shape: &Box<dyn CandidateEffect>,
+        shape: &dyn CandidateEffect,
         card: &EffectCard,
         group: &[(usize, f64)],
         sources: &[usize],
@@ -316,7 +316,7 @@ impl Builder<'_, '_> {
     fn passed_on(
         &mut self,
         name: &'static str,
-        shape: &Box<dyn CandidateEffect>,
+        shape: &dyn CandidateEffect,
         card: &EffectCard,
         target: usize,
         source: usize,
@@ -349,7 +349,7 @@ impl Builder<'_, '_> {
     }
 
     /// Beside the model: into an output, of an input.
-    fn beside(&mut self, name: &'static str, shape: &Box<dyn CandidateEffect>, card: &EffectCard) {
+    fn beside(&mut self, name: &'static str, shape: &dyn CandidateEffect, card: &EffectCard) {
         let base = self.problem.base.clone();
         for (target, (_, origin)) in base.targets.entries.iter().enumerate() {
             if !matches!(origin, Origin::Output(_)) {
@@ -370,7 +370,7 @@ impl Builder<'_, '_> {
     fn push(
         &mut self,
         name: &'static str,
-        shape: &Box<dyn CandidateEffect>,
+        shape: &dyn CandidateEffect,
         card: &EffectCard,
         spot: Spot,
         push: f64,
@@ -435,7 +435,7 @@ impl Builder<'_, '_> {
             };
             self.found.push(Candidate {
                 effect: name,
-                shape: shape.clone(),
+                shape: shape.boxed(),
                 card: card.clone(),
                 into: target_signal.name.clone(),
                 of: spot.source.map(|_| source_signal.name.clone()),
@@ -477,7 +477,7 @@ impl Builder<'_, '_> {
     /// Root mean square of w along the baseline for a coefficient of 1.
     fn shape_size(
         &self,
-        shape: &Box<dyn CandidateEffect>,
+        shape: &dyn CandidateEffect,
         card: &EffectCard,
         start: &[f64],
         linear: &[usize],
@@ -494,11 +494,7 @@ impl Builder<'_, '_> {
         }
         let mut knobs = start.to_vec();
         knobs[first] = 1.0;
-        let size =
-            crate::statistics::rms(&curve(shape.as_ref(), &knobs, self.nominal.series(source)));
+        let size = crate::statistics::rms(&curve(shape, &knobs, self.nominal.series(source)));
         if size > 0.0 && size.is_finite() { size } else { fallback }
     }
 }
-
-/// How fine the integration is that candidates are searched with.
-pub(crate) const SEARCH: Grain = Grain::Coarse;

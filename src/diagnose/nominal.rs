@@ -14,8 +14,6 @@ const POINTS: usize = 9;
 pub(crate) struct Nominal {
     /// Entries of the source table at every sample.
     pub seen: Vec<Vec<f64>>,
-    /// Outputs.
-    pub y: Vec<Vec<f64>>,
     /// Standard deviation of every state.
     pub state_spread: Vec<f64>,
     /// How fast the outputs move, in s.
@@ -100,7 +98,6 @@ impl Nominal {
                 10.0 * dt
             },
             seen: track.seen,
-            y,
             natural,
             columns,
             points,

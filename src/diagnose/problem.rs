@@ -232,7 +232,7 @@ impl<'a> Problem<'a> {
         let step = self.step(grain);
         let mut theta = model.theta.clone();
         let mut placed = vec![];
-        let mut knobs: Vec<f64> = self.system.effects.iter().flat_map(|p| own_knobs(p)).collect();
+        let mut knobs: Vec<f64> = self.system.effects.iter().flat_map(own_knobs).collect();
         for added in &model.added {
             let own = added.cause.clipped(&added.knobs, step);
             match added.cause.wire {

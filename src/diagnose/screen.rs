@@ -43,8 +43,6 @@ pub(crate) struct Screen {
     pub total: f64,
     /// Residual over spread of the output.
     pub far: f64,
-    /// Root mean square of the residual, in units of the scales.
-    pub residual: f64,
     /// Probe columns tried.
     pub columns: usize,
 }
@@ -219,13 +217,7 @@ pub(crate) fn screen(
     }
     let mut scored: Vec<Scored> = best.into_iter().flatten().collect();
     scored.sort_by(|a, b| b.explained.total_cmp(&a.explained));
-    Some(Screen {
-        scored,
-        total: dot(&left, &left),
-        far: residual / spread.max(1e-300),
-        residual,
-        columns,
-    })
+    Some(Screen { scored, total: dot(&left, &left), far: residual / spread.max(1e-300), columns })
 }
 
 fn keep(best: &mut Option<Scored>, scored: Scored) {

@@ -49,8 +49,6 @@ pub(crate) struct Found {
     pub last: Option<Screen>,
     /// Score of the dependence of the first residual on the inputs.
     pub dependence: f64,
-    /// Whether somebody stopped it.
-    pub stopped: bool,
     /// Samples flagged as spikes, per output.
     pub spikes: Vec<Vec<usize>>,
     /// Whether the most causes allowed were reached.
@@ -276,9 +274,8 @@ impl<'a, 'b> Search<'a, 'b> {
             }
         }
         self.tell(1.0, "done");
-        let stopped = self.watch.stopped();
         let spikes = self.problem.spikes();
-        Some(Found { model, slots, first, last, dependence, stopped, spikes, full })
+        Some(Found { model, slots, first, last, dependence, spikes, full })
     }
 
     /// Whether a model leaves nothing but white noise, so that nothing more can be found.

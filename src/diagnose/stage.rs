@@ -25,9 +25,8 @@ pub(crate) struct Trial {
     pub model: Model,
     /// Outputs over the whole record.
     pub y: Arc<Vec<Vec<f64>>>,
-    /// Mean squares on the part that chooses and the part that is fitted.
+    /// Mean square on the part that chooses.
     pub held: f64,
-    pub fit: f64,
     /// Let through by its share, not by its score.
     pub weak: bool,
 }
@@ -335,13 +334,11 @@ pub(crate) fn trial(
 ) -> Option<Trial> {
     let y = y?;
     let held = problem.mean_square(&y, Part::Choose);
-    let fit = problem.mean_square(&y, Part::Fit);
-    (held.is_finite() && fit.is_finite()).then(|| Trial {
+    (held.is_finite() && problem.mean_square(&y, Part::Fit).is_finite()).then(|| Trial {
         cause: cause.clone(),
         model,
         y,
         held,
-        fit,
         weak,
     })
 }

@@ -49,7 +49,7 @@ impl Teller<'_, '_> {
         let after = test.score(&extended)?;
         let floors = test.floors(system, &before);
         let y_before = self.problem.simulate(start, Grain::Fine);
-        let y_before = y_before.map_or_else(|| chosen.y.clone(), |y| y);
+        let y_before = y_before.unwrap_or_else(|| chosen.y.clone());
         let mut causes = self.causes(chosen, test, &before, &after, &floors)?;
         causes.extend(self.moved(chosen, test, &before, &after, &floors)?);
         let structural = causes.len();

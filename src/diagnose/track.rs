@@ -146,7 +146,6 @@ impl Tracks<'_, '_> {
             first: None,
             last: None,
             dependence: trusted.found.dependence,
-            stopped: false,
             spikes,
             full: false,
         })

@@ -33,7 +33,7 @@ pub(crate) fn magnitude(value: &Value, signed: bool) -> String {
 /// A share in per cent.
 pub(crate) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
-    if percent >= 99.0 && percent < 100.0 {
+    if (99.0..100.0).contains(&percent) {
         format!("{percent:.1} %")
     } else {
         format!("{percent:.0} %")

@@ -204,7 +204,7 @@ impl<'a> Run<'a> {
         let end = (first.start + within).min(first.end);
         let drive = Drive {
             inputs: self.drive.inputs.iter().map(|u| u[..end].to_vec()).collect(),
-            segments: vec![first.start..end],
+            segments: std::iter::once(first.start..end).collect(),
             origins: vec![0],
         };
         let mut lanes = vec![self.lane(vec![initial.clone()])];
@@ -248,7 +248,7 @@ impl<'a> Run<'a> {
         let end = (segment.start + count).min(segment.end);
         let drive = Drive {
             inputs: self.drive.inputs.iter().map(|u| u[..end].to_vec()).collect(),
-            segments: vec![segment.start..end],
+            segments: std::iter::once(segment.start..end).collect(),
             origins: vec![origin],
         };
         let scales: Vec<f64> = self.state_scales(&drive, &initial);

@@ -224,17 +224,4 @@ impl Learned {
     pub(crate) fn frame(&self) -> Frame {
         Frame { inputs: self.input_scales.clone(), outputs: self.output_scales.clone() }
     }
-
-    /// w = φ(z) for one sample.
-    pub(crate) fn apply(&self, z: &[f64], w: &mut [f64]) {
-        let scaled: Vec<f64> = z
-            .iter()
-            .zip(&self.input_scales)
-            .map(|(z, (offset, scale))| (z - offset) / scale)
-            .collect();
-        self.net.apply(&scaled, w);
-        for (w, (offset, scale)) in w.iter_mut().zip(&self.output_scales) {
-            *w = offset + scale * *w;
-        }
-    }
 }

@@ -2,7 +2,7 @@
 
 use crate::model::DIRECTIONS;
 use crate::per_lanes;
-use crate::real::{Dual, Real};
+use crate::real::Dual;
 
 per_lanes! {
     /// sum += weight * k and, for the next stage, trial = x + further * k.

@@ -38,5 +38,4 @@ pub use structure::{Form, Scales, Structure};
 
 pub(crate) use engine::Engine;
 pub(crate) use number::Number;
-pub(crate) use program::Program;
 pub(crate) use work::Work;

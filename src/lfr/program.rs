@@ -119,12 +119,6 @@ pub(crate) struct Program {
 
 /// Adjoints begin with those of x+ and x.
 impl Program {
-    pub fn adjoint_next(&self) -> Range<usize> {
-        0..self.states
-    }
-    pub fn adjoint_state(&self) -> Range<usize> {
-        self.states..2 * self.states
-    }
     pub fn adjoint_error(&self) -> Range<usize> {
         2 * self.states..2 * self.states + self.outputs
     }

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use super::law::Matrices;
-use super::{At, Fault, Parameter, Physics, Signal, Signals, State, TimeKind};
+use super::{At, Fault, Parameter, Physics, Signal, Signals, State};
 use crate::real::Real;
 
 /// Whether the matrices give derivatives or next states.

@@ -31,5 +31,5 @@ pub use pack::Precision;
 pub use resnet::{ResNet, Start};
 
 pub(crate) use kernel::{Instants, add, add_scaled, flush, inner};
-pub(crate) use pack::{Line, Row, per_pack};
+pub(crate) use pack::{Line, Row};
 pub(crate) use sweep::{Arranged, Frame};

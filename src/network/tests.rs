@@ -1,4 +1,4 @@
-use super::pack::{Pack, Precision, Row, per_pack};
+use super::pack::{Precision, Row, per_pack};
 use super::*;
 use crate::data::Random;
 

@@ -345,7 +345,7 @@ mod tests {
         // ten residuals of variance 1 around x = 2 against a prior 0 +- 1/sqrt(10)
         let unknown = Unknown::new(0.0, 1.0).expected(0.0, 1.0 / 10f64.sqrt());
         let fit = run(Levenberg::new(vec![unknown], Settings::default()), |p| {
-            let side = |i: usize| if i % 2 == 0 { 1.0 } else { -1.0 };
+            let side = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -1.0 };
             Some((0..10).map(|i| side(i) + 2.0 - p[0]).collect())
         });
         // variance is estimated from the residuals, so the balance is near the middle

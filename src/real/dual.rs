@@ -43,7 +43,7 @@ impl<R: Real, const D: usize> Dual<R, D> {
     fn chain(self, value: R, derivative: R) -> Self {
         let mut slope = self.slope;
         for s in &mut slope {
-            *s = *s * derivative;
+            *s *= derivative;
         }
         Self { value, slope }
     }

@@ -19,6 +19,7 @@ pub type F32x16 = Lanes<f32, 16>;
 
 macro_rules! binary {
     ($t:ty, $($trait:ident $method:ident $assign_trait:ident $assign:ident $op:tt),*) => {$(
+        #[allow(clippy::assign_op_pattern)] // the operator is an argument
         impl<const N: usize> $trait for Lanes<$t, N> {
             type Output = Self;
             #[inline(always)]
@@ -29,6 +30,7 @@ macro_rules! binary {
                 self
             }
         }
+        #[allow(clippy::assign_op_pattern)]
         impl<const N: usize> $trait<f64> for Lanes<$t, N> {
             type Output = Self;
             #[inline(always)]
@@ -40,6 +42,7 @@ macro_rules! binary {
                 self
             }
         }
+        #[allow(clippy::assign_op_pattern)]
         impl<const N: usize> $assign_trait for Lanes<$t, N> {
             #[inline(always)]
             fn $assign(&mut self, other: Self) {

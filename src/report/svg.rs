@@ -338,7 +338,7 @@ fn label(v: f64, (low, high): (f64, f64), scale: Scale) -> String {
     if v == 0.0 {
         return "0".into();
     }
-    if scale == Scale::Log || size >= 1e5 || size < 1e-3 {
+    if scale == Scale::Log || !(1e-3..1e5).contains(&size) {
         let text = format!("{v:.2e}");
         // 2.00e-4 is 2e-4
         let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));

@@ -7,8 +7,8 @@ mod spectrum;
 
 pub(crate) use basis::{add_to_basis, project};
 pub(crate) use blocks::{
-    autocorrelation, block_sums, blocks, corrected_score, deviation, dot, mean, median, mixture,
-    normal_tail, rms, spread, wald, whiteness,
+    block_sums, blocks, corrected_score, deviation, dot, mean, median, mixture, normal_tail, rms,
+    spread, wald, whiteness,
 };
 pub(crate) use sandwich::covariance;
 pub(crate) use spectrum::{power, strongest};

@@ -2,7 +2,6 @@
 
 use crate::model::{Ask, Block, LaneNumber, Law};
 use crate::per_lanes;
-use crate::real::Real;
 
 use super::exact::Exact;
 use super::group::{Group, Instant};

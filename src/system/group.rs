@@ -1,7 +1,6 @@
 //! One group of lanes: the effects they have in common, and what these remember.
 
-use crate::model::{Ask, Block, LaneNumber, Law};
-use crate::real::Real;
+use crate::model::{Ask, Block, Law};
 
 use super::engine::pack;
 use super::inputs::InputPaths;

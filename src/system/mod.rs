@@ -29,10 +29,10 @@ use crate::real::F64x8;
 pub use error::SystemError;
 pub(crate) use lane::{Drive, Lane, Route, Track};
 pub use placed::{AlsoInto, Placed};
-pub(crate) use plan::{Base, Plan, Slot, Way};
-pub(crate) use rates::{Rates, points};
+pub(crate) use plan::{Base, Plan, Way};
+pub(crate) use rates::points;
 pub use sampling::{Hold, Integrator, Method, Sampling};
-pub(crate) use tables::{Origin, Sources, Targets};
+pub(crate) use tables::Origin;
 
 /// A model, how it is sampled, and the effects that extend it.
 ///

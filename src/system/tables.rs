@@ -82,11 +82,6 @@ impl Targets {
     pub fn names(&self) -> Vec<String> {
         self.entries.iter().map(|(signal, _)| signal.name.clone()).collect()
     }
-
-    /// Position of an origin.
-    pub fn at(&self, origin: Origin) -> Option<usize> {
-        self.entries.iter().position(|(_, o)| *o == origin)
-    }
 }
 
 fn own((i, signal): (usize, Signal)) -> (Signal, Origin) {

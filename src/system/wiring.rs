@@ -251,7 +251,7 @@ impl<R: EffectNumber> Wiring<R> {
         }
         if let Some(gains) = &self.gains {
             for (w, &gain) in self.w.iter_mut().zip(gains) {
-                *w = *w * gain;
+                *w *= gain;
             }
         }
     }

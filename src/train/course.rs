@@ -66,9 +66,4 @@ impl Series<'_> {
     pub fn len(&self) -> usize {
         self.u.iter().chain(&self.y).map(|s| s.len()).max().unwrap_or(0)
     }
-
-    /// Whether there are none.
-    pub fn is_empty(&self) -> bool {
-        self.len() == 0
-    }
 }

@@ -6,6 +6,7 @@
 //! paper's recipe. Windows hold 9 past samples and the current one.
 
 #[path = "../paper_msd/record.rs"]
+#[allow(dead_code)]
 mod record;
 
 use std::time::Instant;
@@ -100,7 +101,9 @@ fn main() {
         json!({ "map": "linearised", "least_ms": 1e3 * least, "median_ms": 1e3 * median })
     );
     let linear = SampledLinear::about(&system, 0.1, &about, &[]).unwrap();
-    let (least, median) = times(200, || drop(Reconstruction::of(&linear, WINDOW, &names).unwrap()));
+    let (least, median) = times(200, || {
+        std::hint::black_box(Reconstruction::of(&linear, WINDOW, &names).unwrap());
+    });
     println!(
         "{}",
         json!({ "map": "reconstruction alone", "least_ms": 1e3 * least, "median_ms": 1e3 * median })
@@ -108,7 +111,9 @@ fn main() {
 
     let on_validation = Baseline::new(&system, &validation).unwrap();
     let baseline = Baseline::new(&system, &train).unwrap();
-    let (wall, _) = times(1, || drop(baseline.simulate().unwrap().outputs.len()));
+    let (wall, _) = times(1, || {
+        std::hint::black_box(baseline.simulate().unwrap());
+    });
     println!("{}", json!({ "simulation_ms": 1e3 * wall }));
 
     let linear: [(&str, &dyn EncoderInitialiser); 3] = [
