@@ -54,6 +54,10 @@ pub(crate) struct Job {
 /// Outputs of one simulation, `None` where it diverged.
 pub(crate) type Simulated = Option<Arc<Vec<Vec<f64>>>>;
 
+/// Error of rough steps, as a share of the outputs' spread, at which the direction of a
+/// small change is still right.
+const ROUGH: f64 = 0.02;
+
 /// Which integration steps a simulation takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Grain {
@@ -61,6 +65,8 @@ pub(crate) enum Grain {
     Fine,
     /// Fewer, corrected by what that changes about the present model.
     Coarse,
+    /// As few as still show in which direction a small change moves the outputs.
+    Rough,
 }
 
 /// Which samples a simulation runs over.
@@ -91,6 +97,7 @@ pub(crate) struct Problem<'a> {
     pub system: &'a System,
     pub base: Arc<Base>,
     coarse: Arc<Base>,
+    rough: Arc<Base>,
     pub drive: Drive,
     fit_drive: Drive,
     /// Measured outputs; 0 where weight is 0.
@@ -159,6 +166,7 @@ impl<'a> Problem<'a> {
             .map(|y| y.iter().map(|v| if v.is_finite() { *v } else { 0.0 }).collect());
         Ok(Self {
             coarse: base.clone(),
+            rough: base.clone(),
             fit_drive,
             y: y.collect(),
             weight,
@@ -181,9 +189,15 @@ impl<'a> Problem<'a> {
 
     /// Integration step of a grain, in s.
     pub fn step(&self, grain: Grain) -> f64 {
+        let base = self.base_of(grain);
+        base.sampling_time / base.substeps as f64
+    }
+
+    fn base_of(&self, grain: Grain) -> &Arc<Base> {
         match grain {
-            Grain::Fine => self.base.sampling_time / self.base.substeps as f64,
-            Grain::Coarse => self.coarse.sampling_time / self.coarse.substeps as f64,
+            Grain::Fine => &self.base,
+            Grain::Coarse => &self.coarse,
+            Grain::Rough => &self.rough,
         }
     }
 
@@ -211,7 +225,7 @@ impl<'a> Problem<'a> {
         if let Some(plan) = self.plans.lock().ok()?.get(&key) {
             return Some(plan.clone());
         }
-        let base = if grain == Grain::Fine { &self.base } else { &self.coarse };
+        let base = self.base_of(grain);
         let mut all = self.system.effects.clone();
         all.extend_from_slice(placed);
         let plan = Arc::new(Plan::new(base.clone(), &all).ok()?);
@@ -221,7 +235,7 @@ impl<'a> Problem<'a> {
 
     /// A plan of its own for effects whose shape is part of them (a free curve's knots).
     pub fn plan_anew(&self, grain: Grain, placed: &[Placed]) -> Option<Arc<Plan>> {
-        let base = if grain == Grain::Fine { &self.base } else { &self.coarse };
+        let base = self.base_of(grain);
         let mut all = self.system.effects.clone();
         all.extend_from_slice(placed);
         Plan::new(base.clone(), &all).ok().map(Arc::new)
@@ -347,27 +361,35 @@ impl<'a> Problem<'a> {
         let n = self.base.substeps;
         let mut tried = vec![1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 50, 100, 200, 500, 1000];
         tried.retain(|&count| count <= n / 2);
+        let mut rough = None;
         for count in tried {
-            let mut base = Base::new(
+            let Ok(mut base) = Base::new(
                 self.system.model.as_ref(),
                 &self.system.sampling,
                 self.base.sampling_time,
-            );
-            if let Ok(base) = &mut base {
-                base.substeps = count;
+            ) else {
+                return;
+            };
+            base.substeps = count;
+            self.take_steps(Arc::new(base), None);
+            let Some(coarse) = self.simulate(model, Grain::Coarse) else { continue };
+            let off = self.distance(&coarse, &fine);
+            if off < ROUGH * spread && rough.is_none() {
+                rough = Some(self.coarse.clone());
             }
-            let Ok(base) = base else { return };
-            self.coarse = Arc::new(base);
-            if let Ok(mut plans) = self.plans.lock() {
-                plans.retain(|key, _| key.0 == Grain::Fine);
-            }
-            let coarse = self.simulate(model, Grain::Coarse);
-            if coarse.is_some_and(|coarse| self.distance(&coarse, &fine) < allowed) {
+            if off < allowed {
+                self.take_steps(self.coarse.clone(), rough);
                 self.correct(model, &fine);
                 return;
             }
         }
-        self.coarse = self.base.clone();
+        self.take_steps(self.base.clone(), rough);
+    }
+
+    /// Sets what coarse and rough steps are.
+    fn take_steps(&mut self, coarse: Arc<Base>, rough: Option<Arc<Base>>) {
+        self.rough = rough.unwrap_or(coarse.clone());
+        self.coarse = coarse;
         if let Ok(mut plans) = self.plans.lock() {
             plans.retain(|key, _| key.0 == Grain::Fine);
         }

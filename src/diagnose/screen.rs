@@ -67,8 +67,9 @@ pub(crate) fn with_candidate(
     cause: &Arc<Candidate>,
     knobs: &[f64],
     blend: f64,
+    grain: Grain,
 ) -> Option<Job> {
-    let mut job = problem.job(&model.with(cause, knobs.to_vec()), Grain::Coarse)?;
+    let mut job = problem.job(&model.with(cause, knobs.to_vec()), grain)?;
     if blend != 1.0 {
         let slots = job.plan.slots.len();
         let mut gains = vec![1.0; slots];
@@ -89,7 +90,7 @@ struct Sharing<'a, 'b> {
 impl Sharing<'_, '_> {
     fn job(&mut self, cause: &Arc<Candidate>, knobs: &[f64], blend: f64) -> Option<Job> {
         let (Wire::Stage(route), true) = (&cause.wire, cause.also_into.is_empty()) else {
-            return with_candidate(self.problem, self.model, cause, knobs, blend);
+            return with_candidate(self.problem, self.model, cause, knobs, blend, Grain::Rough);
         };
         // same effect, same absent bounds, same need of a rate: the same compiled slot
         let absent: String = knobs.iter().map(|v| if v.is_finite() { 'f' } else { 'i' }).collect();
@@ -101,9 +102,16 @@ impl Sharing<'_, '_> {
                 cause.clone()
             }
         };
-        let clipped = cause.clipped(knobs, self.problem.step(Grain::Coarse));
+        let clipped = cause.clipped(knobs, self.problem.step(Grain::Rough));
         // the first one's sign rule must not clip this one's knobs
-        let mut job = with_candidate(self.problem, self.model, &first, &first.starts[0], blend)?;
+        let mut job = with_candidate(
+            self.problem,
+            self.model,
+            &first,
+            &first.starts[0],
+            blend,
+            Grain::Rough,
+        )?;
         let own = clipped.len();
         let at = job.lane.knobs.len() - own;
         job.lane.knobs[at..].copy_from_slice(&clipped);
@@ -135,6 +143,10 @@ pub(crate) fn screen(
         let sum: f64 = (0..problem.y.len()).map(of).sum();
         (sum / problem.y.len() as f64).sqrt()
     };
+    // probes are compared with the same steps without them
+    let job = problem.job(model, Grain::Rough)?;
+    let rough = problem.run(&[job], Span::Fit).swap_remove(0)?;
+    let rough = problem.residual(&rough, Part::Fit);
     let residual = rms(&r);
     let gentle = (0.02 * spread).min(0.5 * residual);
     let mut sharing = Sharing { problem, model, kinds: vec![] };
@@ -153,7 +165,7 @@ pub(crate) fn screen(
         }
     }
     let columns = probes.len();
-    let hits = steer(problem, &mut sharing, candidates, &mut probes, &r, (1e-6, gentle), true);
+    let hits = steer(problem, &mut sharing, candidates, &mut probes, &rough, (1e-6, gentle), true);
     let mut of_start: std::collections::BTreeMap<(usize, usize), Vec<(Vec<f64>, f64)>> =
         Default::default();
     for (probe, column) in hits {
@@ -204,7 +216,7 @@ pub(crate) fn screen(
         }
         let target = 0.7 * residual;
         for (probe, column) in
-            steer(problem, &mut sharing, candidates, &mut probes, &r, (0.3, target), false)
+            steer(problem, &mut sharing, candidates, &mut probes, &rough, (0.3, target), false)
         {
             let cause = &candidates[probe.candidate];
             let sign = probe.size.signum();

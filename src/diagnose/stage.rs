@@ -92,7 +92,12 @@ pub(crate) fn stage(
         }
         // several variants of one cause count once, unless there is room
         let variant = chosen.iter().filter(|(c, _)| c.cause.same_cause(&scored.cause)).count();
-        if variant < 2 && !chosen.iter().any(|(c, _)| Arc::ptr_eq(&c.cause, &scored.cause)) {
+        // and so does one shape in many places: a flexible one would crowd out the true one
+        let same = chosen.iter().filter(|(c, _)| c.cause.effect == scored.cause.effect).count();
+        if variant < 2
+            && same < most.div_ceil(2)
+            && !chosen.iter().any(|(c, _)| Arc::ptr_eq(&c.cause, &scored.cause))
+        {
             chosen.push((scored.clone(), None));
         }
     }
@@ -136,7 +141,7 @@ fn scan_all(
         for size in ladder(cause, scored.probe, 7) {
             let mut knobs = cause.starts[scored.start].clone();
             knobs[cause.linear[0]] = size;
-            if let Some(job) = with_candidate(problem, model, cause, &knobs, 1.0) {
+            if let Some(job) = with_candidate(problem, model, cause, &knobs, 1.0, Grain::Coarse) {
                 jobs.push(job);
                 of.push((index, size));
             }
@@ -264,7 +269,9 @@ fn judge(
     let mut of = vec![];
     for (index, (scored, scanned)) in chosen.iter().enumerate() {
         for knobs in starting_points(scored, *scanned) {
-            if let Some(job) = with_candidate(problem, model, &scored.cause, &knobs, 1.0) {
+            if let Some(job) =
+                with_candidate(problem, model, &scored.cause, &knobs, 1.0, Grain::Coarse)
+            {
                 jobs.push(job);
                 of.push((index, knobs));
             }

@@ -35,7 +35,7 @@ macro_rules! effect_number {
 effect_number!(F64x8 => F64, F32x16 => F32, Dual64 => Dual64, Dual32 => Dual32);
 
 /// Where an entry of the source table is found.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Found {
     State(usize),
     Own(usize),
@@ -83,13 +83,40 @@ pub(crate) fn find(plan: &Plan, entry: usize) -> Found {
 }
 
 /// One lane's own wiring, looked up.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct LaneRoute {
     source: Found,
     rate: (Found, f64),
     target: usize,
     /// Own channel or input that is entered, `None` for an output.
     place: Option<(bool, usize)>,
+}
+
+/// One way that some lanes of a pack share.
+#[derive(Debug, Clone)]
+struct Shared {
+    pack: usize,
+    route: LaneRoute,
+    lanes: Vec<usize>,
+    /// Whether these are all lanes of the pack.
+    whole: bool,
+}
+
+/// The ways of all packs, lanes of the same way together.
+fn shared(routes: &[Option<LaneRoute>], width: usize) -> Vec<Shared> {
+    let mut found: Vec<Shared> = vec![];
+    for (l, route) in routes.iter().enumerate() {
+        let (pack, lane) = (l / width, l % width);
+        let Some(route) = *route else { continue };
+        match found.iter_mut().rev().find(|s| s.pack == pack && s.route == route) {
+            Some(way) => way.lanes.push(lane),
+            None => found.push(Shared { pack, route, lanes: vec![lane], whole: false }),
+        }
+    }
+    for way in &mut found {
+        way.whole = way.lanes.len() == width;
+    }
+    found
 }
 
 /// Own channel (true) or input (false) of a target entry.
@@ -112,7 +139,7 @@ pub(crate) struct Wiring<R> {
     /// Entries of the target table with factors, and what they are.
     targets: Vec<(usize, f64, Option<(bool, usize)>)>,
     /// Wiring of each lane where lanes differ.
-    routes: Option<Vec<Option<LaneRoute>>>,
+    routes: Option<Vec<Shared>>,
     gains: Option<Vec<R>>,
     play: Option<PlayState<R>>,
     packs: usize,
@@ -148,8 +175,9 @@ impl<R: EffectNumber> Wiring<R> {
         };
         let routes = routed
             .then(|| (0..packs * R::LANES).map(|l| route(l).map(look_up)).collect::<Vec<_>>());
+        let routes = routes.map(|routes| shared(&routes, R::LANES));
         let mut enters: Vec<usize> = targets.iter().map(|(entry, _)| *entry).collect();
-        enters.extend(routes.iter().flatten().flatten().map(|route| route.target));
+        enters.extend(routes.iter().flatten().map(|way| way.route.target));
         let into_output = |&e: &usize| matches!(plan.targets.entries[e].1, Origin::Output(_));
         let (n, m) = (slot.card.knobs.len(), slot.card.states);
         let own = |all: &[R], width: usize, from: usize, n: usize| {
@@ -179,8 +207,8 @@ impl<R: EffectNumber> Wiring<R> {
     pub fn looks_at(&self) -> Vec<Found> {
         let mut found = self.sources.clone();
         found.extend(self.rate.map(|(place, _)| place));
-        for route in self.routes.iter().flatten().flatten() {
-            found.extend([route.source, route.rate.0]);
+        for way in self.routes.iter().flatten() {
+            found.extend([way.route.source, way.route.rate.0]);
         }
         found
     }
@@ -189,7 +217,7 @@ impl<R: EffectNumber> Wiring<R> {
     pub fn enters_inputs(&self) -> bool {
         let is_input = |place: Option<(bool, usize)>| matches!(place, Some((false, _)));
         self.targets.iter().any(|t| is_input(t.2))
-            || self.routes.iter().flatten().flatten().any(|r| is_input(r.place))
+            || self.routes.iter().flatten().any(|way| is_input(way.route.place))
     }
 
     pub fn restart(&mut self) {
@@ -216,14 +244,23 @@ impl<R: EffectNumber> Wiring<R> {
                 }
             }
             Some(routes) => {
-                for (l, route) in routes.iter().enumerate() {
-                    let (pack, lane) = (l / R::LANES, l % R::LANES);
-                    let Some(route) = route else { continue };
-                    let z = sight.at(pack, route.source).lane(lane);
-                    self.coordinates[pack * seen].set_lane(lane, z);
+                for Shared { pack, route, lanes, whole } in routes {
+                    let z = sight.at(*pack, route.source);
+                    let to = &mut self.coordinates[pack * seen];
+                    if *whole {
+                        *to = *z;
+                    } else {
+                        lanes.iter().for_each(|&lane| to.set_lane(lane, z.lane(lane)));
+                    }
                     if self.rate.is_some() {
-                        let rate = sight.at(pack, route.rate.0).lane(lane) * route.rate.1;
-                        self.rate_in[pack].set_lane(lane, rate);
+                        let rate = sight.at(*pack, route.rate.0);
+                        let to = &mut self.rate_in[*pack];
+                        if *whole {
+                            *to = *rate * route.rate.1;
+                        } else {
+                            let set = |&lane| to.set_lane(lane, rate.lane(lane) * route.rate.1);
+                            lanes.iter().for_each(set);
+                        }
                     }
                 }
             }
@@ -282,13 +319,17 @@ impl<R: EffectNumber> Wiring<R> {
                 }
             }
             Some(routes) => {
-                for (l, route) in routes.iter().enumerate() {
-                    let (pack, lane) = (l / R::LANES, l % R::LANES);
-                    let Some((is_own, i)) = route.as_ref().and_then(|r| r.place) else { continue };
+                for Shared { pack, route, lanes, whole } in routes {
+                    let Some((is_own, i)) = route.place else { continue };
                     let to =
                         if is_own { &mut own[pack * nw + i] } else { &mut inputs[pack * nu + i] };
-                    let sum = to.lane(lane) + self.w[pack].lane(lane);
-                    to.set_lane(lane, sum);
+                    let w = &self.w[*pack];
+                    if *whole {
+                        *to += *w;
+                    } else {
+                        let add = |&lane| to.set_lane(lane, to.lane(lane) + w.lane(lane));
+                        lanes.iter().for_each(add);
+                    }
                 }
             }
         }
@@ -305,10 +346,9 @@ impl<R: EffectNumber> Wiring<R> {
                 }
             }
             Some(routes) => {
-                for lane in 0..R::LANES {
-                    if routes[pack * R::LANES + lane].is_some_and(|route| route.target == target) {
-                        let sum = value.lane(lane) + self.w[pack].lane(lane);
-                        value.set_lane(lane, sum);
+                for way in routes.iter().filter(|w| w.pack == pack && w.route.target == target) {
+                    for &lane in &way.lanes {
+                        value.set_lane(lane, value.lane(lane) + self.w[pack].lane(lane));
                     }
                 }
             }
