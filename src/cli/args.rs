@@ -122,7 +122,7 @@ pub struct Diagnose {
     #[arg(long, value_name = "PARAMETER", value_delimiter = ',', num_args = 1..)]
     pub fix: Vec<String>,
     /// Causes at most
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = positive)]
     pub max_causes: usize,
     /// Samples from which the test record's initial state is estimated; its figures leave
     /// them out [default: until the start is forgotten, at most 10 %]

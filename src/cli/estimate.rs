@@ -13,6 +13,7 @@ use crate::file::save;
 
 pub fn run(args: &Args, seed: u64, look: &Look) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;
+    input::writable(&args.out)?;
     let records: Vec<Record> = args
         .on
         .data

@@ -66,3 +66,14 @@ fn tell(path: &Path, remarks: &[Remark], look: &Look) {
 pub fn init(samples: Option<usize>) -> Init {
     samples.map_or(Init::Forgotten, Init::Samples)
 }
+
+/// Refuses a file in a folder that is not there, before the work rather than after it.
+pub fn writable(path: &Path) -> Result<(), Failure> {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            let folder = folder.display();
+            Err(Failure::work(format!("{}: there is no folder {folder}", path.display())))
+        }
+        _ => Ok(()),
+    }
+}

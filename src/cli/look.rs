@@ -27,11 +27,16 @@ pub struct Look {
     started: Instant,
 }
 
-/// Writes to stdout; a reader that has gone away ends the program quietly.
+/// Writes to stdout; a reader that has gone away ends the program quietly, a full disk does not.
 pub fn print(text: &str) {
     let mut out = std::io::stdout().lock();
-    if out.write_all(text.as_bytes()).and_then(|()| out.flush()).is_err() {
-        std::process::exit(0);
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Ok(()) => {}
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => std::process::exit(0),
+        Err(error) => {
+            line(&format!("error: the result cannot be written to stdout ({error})"));
+            std::process::exit(1);
+        }
     }
 }
 

@@ -63,6 +63,14 @@ impl Simulation {
     pub fn of(system: &System, record: &Record, init: Init) -> Result<Self, EvaluateError> {
         let run = Run::new(system, record)?;
         let count = run.init_samples(init);
+        if count >= record.len() {
+            // nothing would be left to compare
+            return Err(EvaluateError::TooShort {
+                record: record.source.clone(),
+                samples: record.len(),
+                needed: count + 1,
+            });
+        }
         let starts = run.starts(count);
         let track = run.track(starts.clone());
         let signals = &run.plan.signals;

@@ -219,8 +219,7 @@ impl<'de> MapAccess<'de> for TableReader<'_, '_, 'de> {
     ) -> Result<Option<K::Value>, Complaint> {
         let Some(entry) = self.rest.next() else { return Ok(None) };
         self.value = Some(entry);
-        let key = seed.deserialize(BorrowedStrDeserializer::<Complaint>::new(&entry.key));
-        self.of.note(key, &entry.at, Some(&entry.key)).map(Some)
+        seed.deserialize(KeyReader { of: self.of, entry }).map(Some)
     }
 
     fn next_value_seed<V: DeserializeSeed<'de>>(&mut self, seed: V) -> Result<V::Value, Complaint> {
@@ -230,5 +229,36 @@ impl<'de> MapAccess<'de> for TableReader<'_, '_, 'de> {
         let path = Path::Key(&self.of.path, &entry.key);
         let value = Reader { node: &entry.node, path, first: self.of.first };
         value.noted(seed.deserialize(value))
+    }
+}
+
+/// A key; what is wrong with it is noted before a box on the way out turns it into words.
+struct KeyReader<'a, 'de> {
+    of: Reader<'a, 'de>,
+    entry: &'de Entry,
+}
+
+impl<'de> Deserializer<'de> for KeyReader<'_, 'de> {
+    type Error = Complaint;
+
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Complaint> {
+        let key = BorrowedStrDeserializer::<Complaint>::new(&self.entry.key);
+        self.of.note(key.deserialize_any(visitor), &self.entry.at, Some(&self.entry.key))
+    }
+
+    fn deserialize_enum<V: Visitor<'de>>(
+        self,
+        name: &'static str,
+        variants: &'static [&'static str],
+        visitor: V,
+    ) -> Result<V::Value, Complaint> {
+        let key = BorrowedStrDeserializer::<Complaint>::new(&self.entry.key);
+        let key = key.deserialize_enum(name, variants, visitor);
+        self.of.note(key, &self.entry.at, Some(&self.entry.key))
+    }
+
+    forward_to_deserialize_any! {
+        bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf option
+        unit unit_struct newtype_struct seq tuple tuple_struct map struct identifier ignored_any
     }
 }

@@ -232,4 +232,4 @@ fn equilibrium(law: &dyn StateSpaceModel) -> Option<(Vec<f64>, Vec<f64>)> {
 }
 
 crate::register!(StateSpaceModel for Linearised, "linearised", "the linearisation of another model at a point",
-    "[of.duffing]\nmass = 1.0\ndamping = 0.5\nstiffness = 100.0\nhardening = 1000.0");
+    "of.duffing = { mass = 1.0, damping = 0.5, stiffness = 100.0, hardening = 1000.0 }");

@@ -1,0 +1,83 @@
+//! Streams: readers that leave, disks that are full, terminals that are none.
+
+use std::fs::File;
+use std::io::Read;
+use std::process::Stdio;
+
+use super::super::{MODEL, command, record, run, scratch};
+
+#[test]
+fn a_reader_that_leaves_ends_the_program_quietly() {
+    let folder = scratch("pipe");
+    for line in ["models", "effects --json", "completions zsh", "--help", "diagnose --help"] {
+        let mut child =
+            command(&folder, line).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // one byte, as `head -c 1` takes, or none at all
+        let mut pipe = child.stdout.take().unwrap();
+        if line != "models" {
+            pipe.read_exact(&mut [0]).unwrap();
+        }
+        drop(pipe);
+        let output = child.wait_with_output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{line}: {output:?}");
+        assert!(output.stderr.is_empty(), "{line}: {output:?}");
+    }
+}
+
+#[test]
+fn a_listener_to_errors_that_leaves() {
+    let folder = scratch("pipe_err");
+    let mut child = command(&folder, "simulate --model no.toml --data no.csv")
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stderr.take());
+    assert_eq!(child.wait().unwrap().code(), Some(2));
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_is_not_success() {
+    let folder = scratch("full");
+    let full = || File::options().write(true).open("/dev/full").unwrap();
+    for line in ["effects --json", "models"] {
+        let status = command(&folder, line).stdout(full()).stderr(Stdio::null()).status().unwrap();
+        assert_eq!(status.code(), Some(1), "{line}");
+    }
+}
+
+#[test]
+fn quiet_is_quiet_and_nothing_is_coloured() {
+    let folder = scratch("quiet");
+    std::fs::write(folder.join("m.toml"), MODEL).unwrap();
+    record(&folder, "d.csv", "m.toml", 300, 0.01);
+    let loud = run(&folder, "simulate --model m.toml --data d.csv").exits(0);
+    assert!(loud.err.contains("y: RMSE") && loud.out.is_empty(), "{}", loud.err);
+    assert!(!loud.err.contains('\u{1b}') && !loud.err.contains('\r'));
+    let quiet = run(&folder, "simulate --model m.toml --data d.csv --quiet --json").exits(0);
+    assert_eq!(quiet.err, "");
+    assert!(quiet.json()["metrics"]["y"]["rmse"].as_f64().unwrap() < 0.02);
+}
+
+#[test]
+fn results_that_cannot_be_written() {
+    let folder = scratch("unwritable");
+    std::fs::write(folder.join("m.toml"), MODEL).unwrap();
+    record(&folder, "d.csv", "m.toml", 300, 0.01);
+    for line in [
+        "simulate --model m.toml --data d.csv --out no/such/folder/s.csv",
+        "estimate --model m.toml --data d.csv --out no/such/folder/f.toml",
+        "diagnose --model m.toml --data d.csv --out m.toml",
+        "diagnose --model m.toml --data d.csv --out m.toml/inside",
+        "demo --out d.csv",
+    ] {
+        let ran = run(&folder, &format!("{line} --json")).exits(1);
+        let error = ran.json()["error"].clone();
+        assert_eq!(error["kind"], "work", "{line}");
+        let target = line.rsplit(' ').next().unwrap();
+        assert!(error["message"].as_str().unwrap().contains(target), "{line}: {error}");
+    }
+    // what could not be done left what there was
+    assert_eq!(std::fs::read_to_string(folder.join("m.toml")).unwrap(), MODEL);
+}

@@ -1,0 +1,49 @@
+//! How a refusal looks: the same as text and as JSON.
+
+use std::path::Path;
+
+use serde_json::Value;
+
+use super::super::run;
+
+/// What is said about a fault. A place that does not apply is 0 or empty.
+#[derive(Debug, Clone, Copy)]
+pub struct At<'a> {
+    pub file: &'a str,
+    pub line: usize,
+    pub column: usize,
+    pub key: &'a str,
+}
+
+/// A call that is refused: kind, place, words of its message. Returns message and hint.
+#[track_caller]
+pub fn refused(folder: &Path, line: &str, kind: &str, at: At<'_>, words: &[&str]) -> String {
+    let status = if kind == "work" { 1 } else { 2 };
+    let ran = run(folder, &format!("{line} --json")).exits(status);
+    assert_eq!(ran.err, "", "{line}: words beside the JSON document");
+    let error = ran.json()["error"].clone();
+    let number = |n: usize| if n == 0 { Value::Null } else { n.into() };
+    let name = |s: &str| if s.is_empty() { Value::Null } else { s.into() };
+    assert_eq!(error["kind"], kind, "{line}: {error}");
+    assert_eq!(error["file"], name(at.file), "{line}: {error}");
+    assert_eq!(error["line"], number(at.line), "{line}: {error}");
+    assert_eq!(error["column"], number(at.column), "{line}: {error}");
+    assert_eq!(error["key"], name(at.key), "{line}: {error}");
+    let message = error["message"].as_str().unwrap();
+    let all = format!("{message} {}", error["hint"].as_str().unwrap_or_default());
+    for word in words {
+        assert!(all.contains(word), "{line}: no `{word}` in: {all}");
+    }
+    // a person reads the same
+    let ran = run(folder, line).exits(status);
+    assert_eq!(ran.out, "", "{line}: an error on stdout");
+    assert!(ran.err.starts_with("error: "), "{line}: {}", ran.err);
+    let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words(&ran.err).contains(&words(message)), "{line}: {}\n{message}", ran.err);
+    for (what, n) in [("line", at.line), ("column", at.column)] {
+        assert!(n == 0 || message.contains(&format!("{what} {n}")), "{line}: {message}");
+    }
+    assert!(message.contains(at.file) && message.contains(at.key), "{line}: {message}");
+    assert!(!ran.err.contains("\u{1b}["), "{line}: colour without a terminal");
+    all
+}
