@@ -19,12 +19,16 @@ const ACCEPT: f64 = 4.0;
 const AS_GOOD: f64 = 2.0;
 /// Score that causes must pass when the baseline's residual does not depend on the inputs.
 const ACCEPT_INDEPENDENT: f64 = 7.0;
+/// Score on all data that tells two causes apart which the part that chooses does not.
+const TOLD_APART: f64 = 3.0;
 /// A cause of the same set gives back less than this share of what the best removes.
 const SHARE_OF_SET: f64 = 0.10;
 /// A mean square cut to less than this counts as a strong improvement.
 const STRONG: f64 = 0.6;
 /// Members of a named set at most.
 const SET: usize = 4;
+/// Relative change of a first cause's size beyond which it is not believed.
+const STAYED: f64 = 0.4;
 /// First causes that are expanded when one is not enough.
 const BEAM: usize = 5;
 
@@ -121,7 +125,12 @@ impl<'a, 'b> Search<'a, 'b> {
         let apart: f64 = ra.iter().zip(&rb).map(|(a, b)| (a - b).powi(2)).sum();
         // predictions closer than two standard deviations of the noise, all samples together,
         // cannot be told apart whatever the score says
-        if apart > 4.0 * b.held && self.score(&a.y, &b.y) >= AS_GOOD {
+        let told_apart = || {
+            let held = self.score(&a.y, &b.y);
+            held >= AS_GOOD
+                || held > 0.5 && self.problem.better(&a.y, &b.y, Part::All) >= TOLD_APART
+        };
+        if apart > 4.0 * b.held && told_apart() {
             return false;
         }
         a.held - b.held < SHARE_OF_SET * (before - b.held).max(0.0)
@@ -233,7 +242,10 @@ impl<'a, 'b> Search<'a, 'b> {
             } else {
                 last = Some(found.screen);
             }
-            if number == 1 && !trials.is_empty() && !self.is_settled(&before, &trials[0]) {
+            if number == 1
+                && !trials.is_empty()
+                && !(self.is_settled(&before, &trials[0]) && stayed(&model, &trials[0].model))
+            {
                 self.tell(at + 0.6 * step, "looking at pairs");
                 if let Some((better_first, pool)) =
                     self.pairs(&model, &before, &previous, &trials, &candidates)
@@ -451,4 +463,11 @@ fn headed_by(mut slot: Slot, cause: &Arc<Candidate>) -> Slot {
         }
     }
     slot
+}
+
+/// Whether the first cause kept its size when a second one joined it: one that only stood in
+/// for two others does not.
+fn stayed(alone: &Model, joined: &Model) -> bool {
+    let (Some(a), Some(b)) = (alone.added.first(), joined.added.first()) else { return true };
+    a.cause.linear.iter().all(|&i| (a.knobs[i] - b.knobs[i]).abs() < STAYED * a.knobs[i].abs())
 }

@@ -17,6 +17,10 @@ const LARGE_SHARE: f64 = 0.2;
 /// to be trusted and magnitudes are scanned.
 const SCAN_BELOW: f64 = 0.5;
 const SCAN_FAR: f64 = 0.2;
+/// From one size to the next.
+const RUNG: f64 = 2.5;
+/// Candidates whose sizes are looked at between the rungs too.
+const LEADING: usize = 15;
 
 /// A model with one more cause, fitted and judged.
 #[derive(Debug, Clone)]
@@ -150,18 +154,36 @@ fn scan_all(
     let Some(now) = problem.job(model, Grain::Coarse) else { return vec![] };
     let before = squares(problem, &[now])[0];
     let mut best: Vec<(usize, f64, f64)> = vec![];
-    for ((index, size), sum) in of.into_iter().zip(squares(problem, &jobs)) {
-        if sum >= before {
-            continue;
+    let mut keep = |of: Vec<(usize, f64)>, jobs: Vec<Job>| {
+        for ((index, size), sum) in of.into_iter().zip(squares(problem, &jobs)) {
+            match best.iter_mut().find(|(i, ..)| *i == index) {
+                _ if sum >= before => {}
+                Some(entry) if entry.2 <= sum => {}
+                Some(entry) => (entry.1, entry.2) = (size, sum),
+                None => best.push((index, size, sum)),
+            }
         }
-        match best.iter_mut().find(|(i, ..)| *i == index) {
-            Some(entry) if entry.2 <= sum => {}
-            Some(entry) => (entry.1, entry.2) = (size, sum),
-            None => best.push((index, size, sum)),
+        best.sort_by(|a, b| a.2.total_cmp(&b.2));
+        best.clone()
+    };
+    // between the rungs, for those that lead: a sharp optimum lies between two of them
+    let (mut finer, mut jobs_of_finer) = (vec![], vec![]);
+    for (index, size, _) in keep(of, jobs).into_iter().take(LEADING) {
+        let scored = &screened.scored[index];
+        let cause = &scored.cause;
+        let (min, max) = cause.bounds(cause.linear[0]);
+        for share in [-2.0, -1.0, 1.0, 2.0] {
+            let mut knobs = cause.starts[scored.start].clone();
+            let size = (size * RUNG.powf(share / 3.0)).clamp(min, max.max(min));
+            knobs[cause.linear[0]] = size;
+            let job = with_candidate(problem, model, cause, &knobs, 1.0, Grain::Coarse);
+            if let Some(job) = job {
+                jobs_of_finer.push(job);
+                finer.push((index, size));
+            }
         }
     }
-    best.sort_by(|a, b| a.2.total_cmp(&b.2));
-    best.into_iter().map(|(index, size, _)| (index, size)).collect()
+    keep(finer, jobs_of_finer).into_iter().map(|(index, size, _)| (index, size)).collect()
 }
 
 /// Sizes from a small effect upwards, of every sign allowed.
@@ -177,7 +199,7 @@ fn ladder(cause: &Candidate, probe: f64, rungs: i32) -> Vec<f64> {
     let mut sizes = vec![];
     for sign in signs {
         for rung in 0..rungs {
-            let size = sign * smallest * 2.5f64.powi(rung);
+            let size = sign * smallest * RUNG.powi(rung);
             if size >= min && size <= max {
                 sizes.push(size);
             }

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use nalgebra::{DMatrix, DVector};
+
 use super::candidate::Wire;
 use super::dependence::dependence;
 use super::finding::{Moved, Track};
@@ -20,10 +22,8 @@ const MOVED: f64 = 3.0;
 const WINS: f64 = 4.0;
 /// Causes from which on the free track is searched from its own beginning.
 const MANY: usize = 3;
-
 /// Share of the mean square left at which wrong parameters are no suspects any more.
 const SOLVED: f64 = 0.01;
-
 /// Score from which on a residual is not white.
 const COLOURED: f64 = 10.0;
 
@@ -34,18 +34,42 @@ pub(crate) struct Finished {
     /// The final fit on all data, with fine steps.
     pub fitted: Fitted,
     pub nuisance: Nuisance,
-    pub covariance: Option<nalgebra::DMatrix<f64>>,
+    pub covariance: Option<DMatrix<f64>>,
     pub moved: Vec<Moved>,
+    /// Whether parameters moved along a ridge, where none of them has to.
+    pub moved_together: bool,
     /// Outputs of the final fit over all data.
     pub y: Arc<Vec<Vec<f64>>>,
     /// Score that what is left depends on the inputs.
     pub dependence: f64,
 }
 
+/// Whether the free parameters, all together, are further from where they began than their
+/// errors allow: along a ridge none of them alone may be.
+fn moved_together(nuisance: &Nuisance, fitted: &Fitted, covariance: Option<&DMatrix<f64>>) -> bool {
+    let places: Vec<(usize, f64)> = nuisance
+        .free
+        .iter()
+        .filter_map(|&(p, from)| {
+            let at = fitted.keys.iter().position(|key| *key == Key::Theta(p))?;
+            Some((at, fitted.model.theta[p] - from))
+        })
+        .collect();
+    let (Some(all), false) = (covariance, places.is_empty()) else { return false };
+    let own = DMatrix::from_fn(places.len(), places.len(), |i, j| all[(places[i].0, places[j].0)]);
+    let off = DVector::from_iterator(places.len(), places.iter().map(|p| p.1));
+    // in units of each parameter's error, so that the decomposition is well scaled
+    let errors = own.diagonal().map(f64::sqrt);
+    let scaled =
+        DMatrix::from_fn(places.len(), places.len(), |i, j| own[(i, j)] / (errors[i] * errors[j]));
+    let off = off.component_div(&errors);
+    scaled.cholesky().is_some_and(|c| off.dot(&c.solve(&off)) > MOVED.powi(2) * places.len() as f64)
+}
+
 impl Finished {
     /// How much it takes: causes plus parameters moved.
     fn price(&self) -> usize {
-        self.fitted.model.added.len() + self.moved.len()
+        self.fitted.model.added.len() + self.moved.len().max(usize::from(self.moved_together))
     }
 }
 
@@ -169,7 +193,18 @@ impl Tracks<'_, '_> {
                 far.then_some(Moved { name, from, to, std_error: error })
             })
             .collect();
+        let moved_together = moved_together(&nuisance, &fitted, covariance.as_ref());
         let dependence = dependence(self.problem, self.nominal, &y);
-        Some(Finished { track, found, fitted, nuisance, covariance, moved, y, dependence })
+        Some(Finished {
+            track,
+            found,
+            fitted,
+            nuisance,
+            covariance,
+            moved,
+            moved_together,
+            y,
+            dependence,
+        })
     }
 }
