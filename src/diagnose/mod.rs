@@ -11,15 +11,18 @@ mod floor;
 mod library;
 mod nominal;
 mod nuisance;
+mod pairs;
 mod precision;
 mod prepared;
 mod problem;
+mod prune;
 mod records;
 mod remarks;
 mod score;
 mod screen;
 mod search;
 
+mod sets;
 mod spikes;
 mod stage;
 mod teller;

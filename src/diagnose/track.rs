@@ -24,6 +24,8 @@ const WINS: f64 = 4.0;
 const MANY: usize = 3;
 /// Share of the mean square left at which wrong parameters are no suspects any more.
 const SOLVED: f64 = 0.01;
+/// Share of the distance from white that is left where free parameters made way for a cause.
+const WHITER: f64 = 0.5;
 /// Score from which on a residual is not white.
 const COLOURED: f64 = 10.0;
 
@@ -119,8 +121,11 @@ impl Tracks<'_, '_> {
             return Some((trusted, None));
         };
         let better = self.problem.better(&trusted.y, &free.y, Part::Choose);
+        let whiter = trusted.fitted.model.added.is_empty()
+            && !free.fitted.model.added.is_empty()
+            && self.colour(&free.y) < WHITER * self.colour(&trusted.y);
         let take_free = match better {
-            b if b > WINS => true,
+            b if b > WINS || whiter => true,
             b if b < -WINS => false,
             _ => free.price() < trusted.price(),
         };

@@ -1,0 +1,76 @@
+//! Two causes at once, where the best one alone only stood in for them.
+
+use std::sync::Arc;
+
+use super::candidate::Candidate;
+use super::problem::{Model, Part};
+use super::search::Search;
+use super::stage::{Trial, stage};
+
+/// Relative change of a first cause's size beyond which it is not believed.
+const STAYED: f64 = 0.25;
+/// First causes that are expanded when one is not enough.
+const BEAM: usize = 5;
+
+impl Search<'_, '_> {
+    /// Expands other first causes too; the best pair overall, if it beats one cause alone.
+    pub(super) fn pairs(
+        &mut self,
+        model: &Model,
+        before: &Arc<Vec<Vec<f64>>>,
+        previous: &[Trial],
+        trials: &[Trial],
+        candidates: &[Arc<Candidate>],
+    ) -> Option<(Arc<Candidate>, Vec<Trial>)> {
+        let first = model.added.first().map(|a| a.cause.clone());
+        let is_first = |cause: &Candidate| first.as_ref().is_some_and(|f| cause.same_cause(f));
+        let base = self.problem.mean_square(before, Part::Choose);
+        let sibling = |t: &Trial| {
+            first.as_ref().is_some_and(|f| t.cause.into == f.into && t.cause.of == f.of)
+        };
+        let mut others: Vec<&Trial> = previous.iter().filter(|t| !is_first(&t.cause)).collect();
+        others.sort_by(|a, b| sibling(b).cmp(&sibling(a)).then(a.held.total_cmp(&b.held)));
+        let mut taken: Vec<Arc<Vec<Vec<f64>>>> = vec![before.clone()];
+        let mut pool = if first.is_some() { trials.to_vec() } else { vec![] };
+        let mut expanded = 0;
+        for other in others {
+            if expanded >= BEAM || self.watch.stopped() {
+                break;
+            }
+            let near = |y: &Arc<Vec<Vec<f64>>>| {
+                let left = |y: &[Vec<f64>]| self.problem.residual(y, Part::Choose);
+                let (a, b) = (left(&other.y), left(y));
+                let off: f64 =
+                    a.iter().zip(&b).map(|(a, b)| (a - b).powi(2)).sum::<f64>() / a.len() as f64;
+                off < 0.01 * other.held.min(base)
+            };
+            if taken.iter().any(near) {
+                continue;
+            }
+            taken.push(other.y.clone());
+            expanded += 1;
+            if let Some(found) =
+                stage(self.problem, &self.nuisance, &other.model, candidates, false, 6)
+            {
+                pool.extend(found.trials);
+            }
+        }
+        pool.sort_by(|a, b| a.held.total_cmp(&b.held));
+        let best = pool.first()?;
+        let new_first = best.model.added.first()?.cause.clone();
+        if !self.accepts(before, &best.y, best.weak) || is_first(&new_first) {
+            return None;
+        }
+        let same_first =
+            |t: &Trial| t.model.added.first().is_some_and(|a| a.cause.same_cause(&new_first));
+        let pool = pool.iter().filter(|t| same_first(t)).cloned().collect();
+        Some((new_first, pool))
+    }
+}
+
+/// Whether the first cause kept its size when a second one joined it: one that only stood in
+/// for two others does not.
+pub(super) fn stayed(alone: &Model, joined: &Model) -> bool {
+    let (Some(a), Some(b)) = (alone.added.first(), joined.added.first()) else { return true };
+    a.cause.linear.iter().all(|&i| (a.knobs[i] - b.knobs[i]).abs() < STAYED * a.knobs[i].abs())
+}

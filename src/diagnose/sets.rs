@@ -1,0 +1,128 @@
+//! What cannot be told apart: the set of names of one cause, and which of them heads it.
+
+use std::sync::Arc;
+
+use super::candidate::Candidate;
+use super::problem::{Model, Part};
+use super::search::{Search, Slot};
+use super::stage::{Trial, stage, trial};
+
+/// Score below which one model is as good as another.
+pub(super) const AS_GOOD: f64 = 2.0;
+/// Score on all data that tells two causes apart which the part that chooses does not.
+const TOLD_APART: f64 = 3.0;
+/// A cause of the same set gives back less than this share of what the best removes.
+const SHARE_OF_SET: f64 = 0.10;
+/// Members of a named set at most.
+const SET: usize = 4;
+
+impl Search<'_, '_> {
+    /// Whether `a` explains as well as `b`, given what stood before.
+    pub(super) fn as_good(&self, a: &Trial, b: &Trial, before: f64) -> bool {
+        let left = |t: &Trial| self.problem.residual(&t.y, Part::Choose);
+        let (ra, rb) = (left(a), left(b));
+        let apart: f64 = ra.iter().zip(&rb).map(|(a, b)| (a - b).powi(2)).sum();
+        // predictions closer than two standard deviations of the noise, all samples together,
+        // cannot be told apart whatever the score says
+        let told_apart = || {
+            let held = self.score(&a.y, &b.y);
+            held >= AS_GOOD
+                || held > 0.5 && self.problem.better(&a.y, &b.y, Part::All) >= TOLD_APART
+        };
+        if apart > 4.0 * b.held && told_apart() {
+            return false;
+        }
+        a.held - b.held < SHARE_OF_SET * (before - b.held).max(0.0)
+    }
+
+    /// The headline among what is as good as the best, and the set.
+    pub(super) fn choose(&self, trials: &[Trial], before: f64) -> (usize, Slot) {
+        let best = &trials[0];
+        let gain = |t: &Trial| (before - t.held) / (before - best.held).max(1e-300);
+        let mut set: Vec<usize> = (0..trials.len())
+            .filter(|&i| i == 0 || self.as_good(&trials[i], best, before))
+            .collect();
+        set.sort_by(|&i, &j| {
+            let (a, b) = (&trials[i], &trials[j]);
+            a.cause.order().cmp(&b.cause.order()).then(a.held.total_cmp(&b.held))
+        });
+        // one entry per name; the best stays in even if the set is cut
+        let mut named: Vec<usize> = vec![];
+        for &i in &set {
+            if !named.iter().any(|&j| trials[j].cause.same_cause(&trials[i].cause)) {
+                named.push(i);
+            }
+        }
+        if named.len() > SET {
+            let keep_best = named.iter().position(|&i| trials[i].cause.same_cause(&best.cause));
+            if let Some(at) = keep_best.filter(|&at| at >= SET) {
+                named.swap(SET - 1, at);
+            }
+            named.truncate(SET);
+        }
+        let others = trials
+            .iter()
+            .enumerate()
+            .filter(|(_, t)| !named.iter().any(|&j| trials[j].cause.same_cause(&t.cause)))
+            .map(|(_, t)| (t.cause.clone(), gain(t)));
+        let mut distinct: Vec<(Arc<Candidate>, f64)> = vec![];
+        for (cause, gain) in others {
+            if !distinct.iter().any(|(c, _)| c.same_cause(&cause)) {
+                distinct.push((cause, gain));
+            }
+        }
+        let slot = Slot {
+            set: named.iter().map(|&i| (trials[i].cause.clone(), gain(&trials[i]))).collect(),
+            others: distinct,
+            score: 0.0,
+        };
+        (named[0], slot)
+    }
+
+    /// Puts the name that heads each set into the model, given the other causes.
+    pub(super) fn settle(&mut self, model: &mut Model, slots: &mut Vec<Slot>) {
+        for _ in 0..slots.len() {
+            let without = self.fitted(model.without(0));
+            let Slot { set, others, score } = slots.remove(0);
+            let present = model.added[0].clone();
+            let members: Vec<Arc<Candidate>> = set.iter().map(|(cause, _)| cause.clone()).collect();
+            let found =
+                stage(self.problem, &self.nuisance, &without, &members, false, 2 * members.len());
+            let mut trials: Vec<Trial> = found.map(|found| found.trials).unwrap_or_default();
+            let joined = self.fitted(without.with(&present.cause, present.knobs.clone()));
+            let y = self.present(&joined);
+            trials.retain(|t| !t.cause.same_cause(&present.cause));
+            trials.extend(trial(self.problem, &present.cause, joined.clone(), y, false));
+            trials.sort_by(|a, b| a.held.total_cmp(&b.held));
+            let bare = self.present(&without);
+            match bare.map(|y| self.problem.mean_square(&y, Part::Choose)) {
+                Some(before) if trials.len() > 1 => {
+                    let (headline, mut slot) = self.choose(&trials, before);
+                    slot.others.extend(others);
+                    slots.push(Slot { score, ..slot });
+                    *model = trials.swap_remove(headline).model;
+                }
+                _ => {
+                    slots.push(Slot { set, others, score });
+                    *model = joined;
+                }
+            }
+        }
+    }
+}
+
+/// The same set with the cause that is in the model first.
+pub(super) fn headed_by(mut slot: Slot, cause: &Arc<Candidate>) -> Slot {
+    match slot.set.iter().position(|(c, _)| c.same_cause(cause)) {
+        Some(at) => {
+            let own = slot.set.remove(at);
+            slot.set.insert(0, own);
+        }
+        None => {
+            slot.others.retain(|(c, _)| !c.same_cause(cause));
+            slot.set.insert(0, (cause.clone(), 1.0));
+            slot.set.truncate(SET);
+        }
+    }
+    slot
+}
