@@ -22,6 +22,7 @@ pub mod real;
 pub mod register;
 pub mod report;
 mod statistics;
+pub mod study;
 pub mod system;
 pub mod train;
 pub mod watch;

@@ -64,11 +64,32 @@ pub enum Command {
         after_help = "Example:\n  lacuna estimate --model press.toml --data est.csv --out fitted.toml"
     )]
     Estimate(Estimate),
+    /// Trains a network beside a model, and its encoder, on records
+    #[command(
+        after_help = "Example:\n  lacuna fit --model baseline.toml --data est.csv --validate val.csv --config fit.toml\n\n\
+        Writes model.toml (a model like any other), weights.json, history.csv and report.html into\n\
+        --out. The same call goes on from checkpoint.json there; one Ctrl-C stops with the best model."
+    )]
+    Fit(Fit),
     /// Says whether data reject a model: exit status 0 if they do not, 3 if they do
     #[command(
         after_help = "Example:\n  lacuna check --model press.toml --data today.csv --level 0.01"
     )]
     Check(Check),
+    /// Makes records with known truth: excitation, simulation, noise, a hidden effect if asked
+    #[command(
+        after_help = "Example:\n  lacuna generate --config generate.toml --out records --seed 1\n\n\
+        Writes est.csv, test.csv and truth.json into --out."
+    )]
+    Generate(Generate),
+    /// Trains a model from several starts with several seeds, and compares
+    #[command(
+        args_conflicts_with_subcommands = true,
+        after_help = "Examples:\n  lacuna study --config study.toml --out study\n  \
+        lacuna study --config study.toml --shard 2/4 --out shard2\n  \
+        lacuna study merge shard1 shard2 shard3 shard4 --out study"
+    )]
+    Study(Study),
     /// Lists the registered models
     #[command(after_help = "Example:\n  lacuna models --json")]
     Models,
@@ -160,12 +181,80 @@ pub struct Estimate {
 }
 
 #[derive(Debug, Clone, Arguments)]
+pub struct Fit {
+    #[command(flatten)]
+    pub on: ModelAndData,
+    /// Record to choose the best epoch by; may be repeated [default: the last 20 % of the data]
+    #[arg(long, value_name = "FILE")]
+    pub validate: Vec<PathBuf>,
+    /// Record for scoring, used for nothing else
+    #[arg(long, value_name = "FILE")]
+    pub test: Option<PathBuf>,
+    /// Structure, encoder, initialiser and training (TOML or JSON)
+    #[arg(long, value_name = "FILE")]
+    pub config: PathBuf,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Clone, Arguments)]
 pub struct Check {
     #[command(flatten)]
     pub on: ModelAndData,
     /// Probability of rejecting a model that is right
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     pub level: f64,
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Generate {
+    /// System, excitation, noise and what is hidden (TOML or JSON)
+    #[arg(long, value_name = "FILE")]
+    pub config: PathBuf,
+    /// Folder for the records
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Study {
+    #[command(subcommand)]
+    pub verb: Option<StudyVerb>,
+    /// What is compared (TOML or JSON)
+    #[arg(long, value_name = "FILE", required = true)]
+    pub config: Option<PathBuf>,
+    /// Only every n-th training, from the i-th on; `merge` puts the shards together
+    #[arg(long, value_name = "I/N", value_parser = shard)]
+    pub shard: Option<(usize, usize)>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    pub out: PathBuf,
+}
+
+#[derive(Debug, Clone, Subcommand)]
+pub enum StudyVerb {
+    /// Puts the results of all shards together
+    #[command(after_help = "Example:\n  lacuna study merge shard1 shard2 --out study")]
+    Merge(Merge),
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Merge {
+    /// Folders that shards wrote into
+    #[arg(value_name = "DIR", required = true)]
+    pub folders: Vec<PathBuf>,
+    /// Folder for the results
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    pub out: PathBuf,
+}
+
+fn shard(text: &str) -> Result<(usize, usize), String> {
+    let parts = text.split_once('/').map(|(i, n)| (i.parse(), n.parse()));
+    match parts {
+        Some((Ok(i), Ok(n))) if 1 <= i && i <= n => Ok((i, n)),
+        _ => Err("i/n with i from 1 to n is needed, such as 2/4".into()),
+    }
 }
 
 fn probability(text: &str) -> Result<f64, String> {

@@ -10,7 +10,10 @@ use crate::diagnose::DiagnoseError;
 use crate::evaluate::EvaluateError;
 use crate::fault::{Explain, Kind, Place};
 use crate::file::FileError;
+use crate::lfr::LfrError;
+use crate::study::StudyError;
 use crate::system::SystemError;
+use crate::train::TrainError;
 
 /// What ended a command.
 #[derive(Debug)]
@@ -114,4 +117,4 @@ macro_rules! explained {
     )*};
 }
 
-explained!(DataError, EvaluateError, SystemError, DiagnoseError);
+explained!(DataError, EvaluateError, SystemError, DiagnoseError, LfrError, TrainError, StudyError);

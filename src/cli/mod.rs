@@ -11,10 +11,13 @@ mod demo;
 mod diagnose;
 mod estimate;
 mod failure;
+mod fit;
+mod generate;
 mod input;
 mod list;
 mod look;
 mod simulate;
+mod study;
 
 use std::process::ExitCode;
 
@@ -46,6 +49,9 @@ fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
         Command::Diagnose(diagnose) => diagnose::run(diagnose, look),
         Command::Simulate(simulate) => simulate::run(simulate, look),
         Command::Estimate(estimate) => estimate::run(estimate, seed, look),
+        Command::Fit(fit) => fit::run(fit, seed, args.common.threads, look),
+        Command::Generate(generate) => generate::run(generate, seed, look),
+        Command::Study(study) => study::run(study, seed, args.common.threads, look),
         Command::Check(check) => check::run(check, look),
         Command::Models => list::models(look),
         Command::Effects => list::effects(look),

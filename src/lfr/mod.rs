@@ -14,6 +14,7 @@
 
 mod block;
 mod combine;
+mod compiled;
 mod driver;
 mod engine;
 mod error;
@@ -26,6 +27,8 @@ mod order;
 mod program;
 mod rows;
 mod signal;
+mod solo;
+mod standalone;
 mod structure;
 mod work;
 
@@ -34,6 +37,7 @@ pub use error::LfrError;
 pub use interconnection::Interconnection;
 pub use matrix::{Entry, Matrix};
 pub use signal::{Sink, Source};
+pub use standalone::AugmentedModel;
 pub use structure::{Form, Scales, Structure};
 
 pub(crate) use engine::Engine;

@@ -6,11 +6,15 @@ mod page;
 mod signals;
 pub(crate) mod svg;
 mod tables;
+mod training;
 
 use std::path::Path;
 
 use crate::diagnose::{Finding, Verdict, number};
-use page::Page;
+pub(crate) use page::Page;
+pub(crate) use svg::{Figure, Scale};
+
+pub use training::{Shown, TrainingReport};
 
 /// The report of a diagnosis: one self-contained HTML page.
 ///

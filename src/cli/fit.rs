@@ -1,0 +1,265 @@
+//! `lacuna fit`.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value, json};
+
+use super::args::Fit as Args;
+use super::failure::Failure;
+use super::input;
+use super::look::Look;
+use crate::data::Record;
+use crate::diagnose::number;
+use crate::evaluate::{Init, Metrics, Simulation};
+use crate::file::{Document, save_with};
+use crate::lfr::AugmentedModel;
+use crate::report::{Shown, TrainingReport};
+use crate::system::System;
+use crate::train::{Checkpoint, Ended, Epoch, Fit, Follow, Recipe, Run};
+use crate::watch::Watch;
+
+/// Share of the data that is kept for validation where no record is given for it.
+const VALIDATION: f64 = 0.2;
+
+pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Look) -> Result<u8, Failure> {
+    let document = Document::load(&args.config)?;
+    let mut recipe: Recipe = document.read()?;
+    let (system, want) = input::model(&args.on.model)?;
+    let read = |path: &PathBuf| input::record(path, &want, look);
+    let mut records: Vec<Record> = args.on.data.iter().map(read).collect::<Result<_, _>>()?;
+    let mut validation: Vec<Record> = args.validate.iter().map(read).collect::<Result<_, _>>()?;
+    let test = args.test.as_ref().map(read).transpose()?;
+    if validation.is_empty() {
+        look.say("No --validate: the last 20 % of each record are kept for validation.");
+        let mut kept = vec![];
+        for record in &records {
+            let mut parts = record.split(&[1.0 - VALIDATION, VALIDATION])?;
+            validation.extend(parts.pop());
+            kept.extend(parts.pop());
+        }
+        records = kept;
+    }
+    fs::create_dir_all(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
+    if seed != 0 {
+        recipe.training.seed = seed;
+    }
+    let available = || std::thread::available_parallelism().map_or(1, usize::from);
+    recipe.training.threads = threads.unwrap_or_else(available);
+    let checkpoint = recipe
+        .training
+        .checkpoint
+        .get_or_insert_with(|| Checkpoint { path: args.out.join("checkpoint.json"), every: 100 });
+    let known = checkpoint.path.exists();
+    look.hear_interrupts()?;
+    let (start, started) = recipe.start(&system, &records, recipe.training.seed)?;
+    look.say(&started.to_string());
+    if known {
+        look.say("Going on from the checkpoint.");
+    }
+    let mut progress =
+        Progress { look, epochs: recipe.training.epochs, last: String::new(), at: 0 };
+    let fit = recipe.training.fit(&start, &records, &validation, &mut progress)?;
+    look.clear();
+    let done = Done { args, system: &system, recipe: &recipe, fit: &fit, want: &want.outputs };
+    done.write(&started.to_string(), test.as_ref().or(validation.first()), test.is_some(), look)
+}
+
+/// Tells how far the training is, and ends it on Ctrl-C.
+struct Progress<'a> {
+    look: &'a Look,
+    epochs: usize,
+    last: String,
+    at: usize,
+}
+
+impl Follow for Progress<'_> {
+    fn on_epoch(&mut self, epoch: &Epoch) -> ControlFlow<()> {
+        self.at = epoch.epoch;
+        let mut text = format!("epoch {} of {}", epoch.epoch, self.epochs);
+        if let Some(loss) = epoch.loss {
+            let _ = write!(text, ", loss {loss:.3e}");
+        }
+        if let Some(score) = &epoch.score {
+            let errors = score.simulation.first().or(score.ahead.last().and_then(|a| a.first()));
+            if let Some(error) = errors {
+                let _ = write!(text, ", validation RMSE {}", number(*error, None));
+            }
+        }
+        self.last = text;
+        self.tell(0.0)
+    }
+
+    fn on_step(&mut self, done: usize, of: usize) -> ControlFlow<()> {
+        self.tell(done as f64 / of.max(1) as f64)
+    }
+}
+
+impl Progress<'_> {
+    fn tell(&self, of_epoch: f64) -> ControlFlow<()> {
+        let done = (self.at as f64 + of_epoch) / self.epochs.max(1) as f64;
+        self.look.tell(done.min(1.0), &self.last);
+        if self.look.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// A finished training and where it goes.
+struct Done<'a> {
+    args: &'a Args,
+    system: &'a System,
+    recipe: &'a Recipe,
+    fit: &'a Fit,
+    want: &'a [(String, String)],
+}
+
+impl Done<'_> {
+    /// Writes all files, scores the model on the record shown and says what came out.
+    fn write(
+        &self,
+        started: &str,
+        shown: Option<&Record>,
+        is_test: bool,
+        look: &Look,
+    ) -> Result<u8, Failure> {
+        let (out, fit) = (&self.args.out, self.fit);
+        let model = AugmentedModel::new(fit.model.model.clone()).into_system()?;
+        let header =
+            [format!("Fitted by `lacuna fit`: the best of {} epochs.", fit.history.len() - 1)];
+        save_with(&model, &out.join("model.toml"), &header)?;
+        let weights = serde_json::to_string_pretty(&fit.model)
+            .map_err(|error| Failure::work(format!("the weights cannot be written: {error}")))?;
+        write(&out.join("weights.json"), &weights)?;
+        write(&out.join("history.csv"), &self.history())?;
+        let mut report =
+            TrainingReport::of(fit, self.want, &self.recipe.training.validation.lengths)
+                .noting(started);
+        let (mut run, mut before) = (None, vec![]);
+        if let Some(record) = shown {
+            before = Simulation::of(self.system, record, Init::Forgotten)?.outputs;
+            run = Some(fit.model.simulate(record)?);
+        }
+        let baseline: Vec<Vec<f64>> = before.into_iter().map(|(_, values)| values).collect();
+        if let (Some(record), Some(run)) = (shown, &run) {
+            report = report.showing(Shown { record, baseline: &baseline, run });
+        }
+        let page = out.join("report.html");
+        report.write(&page).map_err(|error| cannot_write(&page, &error))?;
+        let scores = match (shown, &run) {
+            (Some(record), Some(run)) => self.scores(record, &baseline, run),
+            _ => vec![],
+        };
+        self.tell(&scores, is_test, look);
+        Ok(0)
+    }
+
+    /// Baseline and trained model on a record, output by output, over the samples that the
+    /// trained model simulates.
+    fn scores(
+        &self,
+        record: &Record,
+        baseline: &[Vec<f64>],
+        run: &Run,
+    ) -> Vec<[Option<Metrics>; 2]> {
+        let each = self.want.iter().enumerate().map(|(o, (name, _))| {
+            let named = record.outputs.iter().find(|signal| signal.name == *name);
+            let measured = named.or(record.outputs.get(o)).map(|signal| &signal.values[..]);
+            let of = |values: Option<&Vec<f64>>| {
+                let (values, measured) = (values?, measured?);
+                let trained = &run.outputs[o];
+                let seen: Vec<usize> = (0..measured.len())
+                    .filter(|&k| !measured[k].is_nan() && !trained[k].is_nan())
+                    .collect();
+                let pick = |from: &[f64]| seen.iter().map(|&k| from[k]).collect::<Vec<_>>();
+                Metrics::of(&pick(measured), &pick(values))
+            };
+            [of(baseline.get(o)), of(run.outputs.get(o))]
+        });
+        each.collect()
+    }
+
+    fn tell(&self, scores: &[[Option<Metrics>; 2]], is_test: bool, look: &Look) {
+        let (fit, out) = (self.fit, &self.args.out);
+        let interrupted = fit.ended == Ended::Asked;
+        if interrupted {
+            look.result("Interrupted: this is the best model so far; the same call goes on.");
+        }
+        let which = if is_test { "test" } else { "validation" };
+        let (mut before, mut after) = (Map::new(), Map::new());
+        for ((name, unit), [baseline, trained]) in self.want.iter().zip(scores) {
+            if let (Some(baseline), Some(trained)) = (baseline, trained) {
+                look.headline(&format!(
+                    "{name}: {which} RMSE {} -> {} {unit} (epoch {})",
+                    number(baseline.rmse, None),
+                    number(trained.rmse, None),
+                    fit.epoch
+                ));
+            }
+            before.insert(name.clone(), json!(baseline));
+            after.insert(name.clone(), json!(trained));
+        }
+        if fit.rollbacks > 0 {
+            look.result(&format!("{} steps led nowhere and were taken back.", fit.rollbacks));
+        }
+        let files = ["model.toml", "weights.json", "history.csv", "report.html"];
+        look.result(&format!("Wrote {} into {}", files.join(", "), out.display()));
+        let last = fit.history.iter().find(|epoch| epoch.epoch == fit.epoch);
+        let mut document = json!({
+            "schema": 1,
+            "epochs": fit.history.len() - 1,
+            "best_epoch": fit.epoch,
+            "ended": fit.ended,
+            "rollbacks": fit.rollbacks,
+            "resumed_at": fit.resumed,
+            "validation": last.and_then(|epoch| epoch.score.as_ref()),
+            "before": { which: Value::Object(before) },
+            "after": { which: Value::Object(after) },
+            "model": "model.toml",
+            "weights": "weights.json",
+            "history": "history.csv",
+            "report": "report.html",
+        });
+        if interrupted {
+            document["interrupted"] = json!(true);
+        }
+        look.document(&document);
+    }
+
+    fn history(&self) -> String {
+        let lengths = &self.recipe.training.validation.lengths;
+        let mut text = String::from("epoch,loss,rate,best,rolled_back");
+        for (name, unit) in self.want {
+            let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+            for length in lengths {
+                let _ = write!(text, ",{name}_rmse_{length}{unit}");
+            }
+            let _ = write!(text, ",{name}_rmse_simulation{unit}");
+        }
+        text.push('\n');
+        let cell = |value: Option<f64>| value.map_or_else(String::new, |v| v.to_string());
+        for epoch in &self.fit.history {
+            let Epoch { epoch: number, loss, rate, best, rolled_back, score } = epoch;
+            let best = u8::from(*best);
+            let _ = write!(text, "{number},{},{rate},{best},{rolled_back}", cell(*loss));
+            for o in 0..self.want.len() {
+                for i in 0..lengths.len() {
+                    let ahead = score.as_ref().and_then(|s| Some(*s.ahead.get(i)?.get(o)?));
+                    let _ = write!(text, ",{}", cell(ahead));
+                }
+                let simulation = score.as_ref().and_then(|s| s.simulation.get(o).copied());
+                let _ = write!(text, ",{}", cell(simulation));
+            }
+            text.push('\n');
+        }
+        text
+    }
+}
+
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    fs::write(path, text).map_err(|error| cannot_write(path, &error))
+}
+
+fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
+    Failure::work(format!("{}: cannot be written ({error})", path.display()))
+}

@@ -1,0 +1,81 @@
+//! `lacuna study`.
+
+use std::path::{Path, PathBuf};
+
+use super::args::{Study as Args, StudyVerb};
+use super::failure::Failure;
+use super::input;
+use super::look::Look;
+use crate::data::Record;
+use crate::diagnose::number;
+use crate::file::Document;
+use crate::study::{Inputs, MonteCarlo, StudyResult};
+
+pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Look) -> Result<u8, Failure> {
+    if let Some(StudyVerb::Merge(merge)) = &args.verb {
+        let result = StudyResult::merge(&merge.folders)?;
+        return finish(&result, &merge.out, look);
+    }
+    let Some(config) = &args.config else {
+        return Err(Failure::work("a study needs --config, or `merge` and folders".into()));
+    };
+    let study: MonteCarlo = Document::load(config)?.read()?;
+    study.check()?;
+    let (i, n) = args.shard.unwrap_or((1, 1));
+    let jobs = study.share(i, n)?;
+    let beside = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
+    let (system, want) = input::model(&beside(&study.model))?;
+    let read = |name: &String| input::record(&beside(name), &want, look);
+    let all = |names: &[String]| names.iter().map(read).collect::<Result<Vec<Record>, _>>();
+    let inputs = Inputs {
+        training: all(&study.data)?,
+        validation: all(&study.validate)?,
+        test: study.test.as_ref().map(read).transpose()?,
+        system,
+    };
+    look.hear_interrupts()?;
+    let threads =
+        threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    let (wanted, whole) = (jobs.len(), n == 1);
+    let done = study.run(&inputs, &jobs, i == 1, threads, seed, &args.out, look)?;
+    look.clear();
+    if done < wanted {
+        look.result(&format!(
+            "Interrupted: {done} of {wanted} trainings are done; the same call goes on."
+        ));
+        look.document(
+            &serde_json::json!({ "schema": 1, "done": done, "of": wanted, "interrupted": true }),
+        );
+        return Ok(0);
+    }
+    if !whole {
+        look.result(&format!("Shard {i}/{n} is done: {done} trainings in {}.", args.out.display()));
+        look.document(
+            &serde_json::json!({ "schema": 1, "done": done, "of": wanted, "shard": [i, n] }),
+        );
+        return Ok(0);
+    }
+    finish(&StudyResult::merge(std::slice::from_ref(&args.out))?, &args.out, look)
+}
+
+fn finish(result: &StudyResult, out: &PathBuf, look: &Look) -> Result<u8, Failure> {
+    result.write(out)?;
+    for summary in result.summaries() {
+        for q in summary.test.iter().flatten() {
+            look.result(&format!(
+                "{}: test RMSE {} ({} to {}) over {} runs",
+                summary.start,
+                number(q.median, None),
+                number(q.least, None),
+                number(q.greatest, None),
+                summary.runs
+            ));
+        }
+    }
+    look.result(&format!(
+        "Wrote study.json, runs.csv, courses.csv and report.html into {}",
+        out.display()
+    ));
+    look.document(&result.document());
+    Ok(0)
+}

@@ -1,0 +1,195 @@
+//! The page of a training: how the error fell, and what the model makes of a record.
+
+use std::path::Path;
+
+use super::page::Page;
+use super::svg::{Figure, Scale, thinned};
+use crate::data::Record;
+use crate::train::{Ended, Epoch, Fit, Run};
+
+/// Stretches that a drawn series is thinned to.
+const STRETCHES: usize = 900;
+/// Samples of the close-up.
+const CLOSE: usize = 300;
+/// Colours in turn.
+const CLASSES: [&str; 4] = ["after", "before", "law", "floor"];
+
+/// A record with the baseline's and the trained model's simulation of it.
+#[derive(Debug, Clone, Copy)]
+pub struct Shown<'a> {
+    /// What was measured.
+    pub record: &'a Record,
+    /// One series per output, of the baseline alone.
+    pub baseline: &'a [Vec<f64>],
+    /// The trained model's.
+    pub run: &'a Run,
+}
+
+/// The report of a training as one self-contained HTML page.
+#[derive(Debug, Clone)]
+pub struct TrainingReport<'a> {
+    fit: &'a Fit,
+    outputs: Vec<(String, String)>,
+    lengths: Vec<usize>,
+    shown: Option<Shown<'a>>,
+    notes: Vec<String>,
+}
+
+impl<'a> TrainingReport<'a> {
+    /// Of a finished training; `outputs` are names and units, `lengths` those of the T-step
+    /// errors in the history.
+    pub fn of(fit: &'a Fit, outputs: &[(String, String)], lengths: &[usize]) -> Self {
+        let (outputs, lengths) = (outputs.to_vec(), lengths.to_vec());
+        Self { fit, outputs, lengths, shown: None, notes: vec![] }
+    }
+
+    /// The same with a record.
+    #[must_use]
+    pub fn showing(mut self, shown: Shown<'a>) -> Self {
+        self.shown = Some(shown);
+        self
+    }
+
+    /// The same with one more line of text.
+    #[must_use]
+    pub fn noting(mut self, text: &str) -> Self {
+        self.notes.push(text.into());
+        self
+    }
+
+    /// Writes the page to a file.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    pub fn write(&self, path: &Path) -> std::io::Result<()> {
+        std::fs::write(path, self.html())
+    }
+
+    /// The page.
+    pub fn html(&self) -> String {
+        let mut page = Page::default();
+        page.element("p", "kicker", "Training of an augmented model");
+        page.element("h1", "", &self.headline());
+        for note in &self.notes {
+            page.element("p", "note", note);
+        }
+        self.courses(&mut page);
+        if let Some(shown) = self.shown {
+            self.signals(&mut page, shown);
+        }
+        self.table(&mut page);
+        page.html("Training")
+    }
+
+    fn headline(&self) -> String {
+        let last = self.fit.history.last().map_or(0, |epoch| epoch.epoch);
+        let ended = match self.fit.ended {
+            Ended::Budget => "as planned",
+            Ended::Patience => "because the validation error fell no further",
+            Ended::Asked => "because it was asked to",
+        };
+        format!(
+            "The model of epoch {} is the best of {last}; training ended {ended}.",
+            self.fit.epoch
+        )
+    }
+
+    fn courses(&self, page: &mut Page) {
+        let history = &self.fit.history;
+        let losses: Vec<(f64, f64)> =
+            history.iter().filter_map(|e| Some((e.epoch as f64, e.loss?))).collect();
+        page.heading("Loss");
+        let figure =
+            Figure::new("epoch", "mean loss of the steps").scales(Scale::Linear, Scale::Log);
+        page.raw(&figure.line("after", "", thinned(&losses, STRETCHES)).svg());
+        if history.iter().all(|e| e.score.is_none()) {
+            return;
+        }
+        for (o, (name, unit)) in self.outputs.iter().enumerate() {
+            page.heading(&format!("{name}: error on the validation records"));
+            let of = |value: &dyn Fn(&Epoch) -> Option<f64>| -> Vec<(f64, f64)> {
+                history.iter().filter_map(|e| Some((e.epoch as f64, value(e)?))).collect()
+            };
+            let mut figure = Figure::new("epoch", &format!("RMSE{}", bracketed(unit)))
+                .scales(Scale::Linear, Scale::Log);
+            for (i, length) in self.lengths.iter().enumerate() {
+                let points = of(&|e| Some(*e.score.as_ref()?.ahead.get(i)?.get(o)?));
+                let class = CLASSES[i % CLASSES.len()];
+                figure =
+                    figure.line(class, &format!("{length} steps"), thinned(&points, STRETCHES));
+            }
+            let points = of(&|e| e.score.as_ref()?.simulation.get(o).copied());
+            figure = figure.line("measured", "simulation", thinned(&points, STRETCHES));
+            page.raw(&figure.svg());
+        }
+    }
+
+    fn signals(&self, page: &mut Page, shown: Shown<'_>) {
+        let (dt, start) = (shown.record.sampling_time, shown.run.starts.first().copied());
+        for (o, (name, unit)) in self.outputs.iter().enumerate() {
+            let (Some(simulated), Some(baseline)) =
+                (shown.run.outputs.get(o), shown.baseline.get(o))
+            else {
+                continue;
+            };
+            let Some(measured) = shown.record.outputs.get(o) else { continue };
+            let timed = |values: &mut dyn Iterator<Item = (usize, f64)>| -> Vec<(f64, f64)> {
+                values.map(|(k, v)| (k as f64 * dt, v)).collect()
+            };
+            let from = start.unwrap_or(0);
+            let close = |values: &[f64]| {
+                let some = values.iter().copied().enumerate().skip(from).take(CLOSE);
+                timed(&mut some.into_iter())
+            };
+            page.heading(&format!("{name}: measured and simulated"));
+            let figure = Figure::new("time [s]", &format!("{name}{}", bracketed(unit)))
+                .line("measured", "measured", close(&measured.values))
+                .line("before", "baseline", close(baseline))
+                .line("after", "trained", close(simulated));
+            page.raw(&figure.svg());
+            let residual = |values: &[f64]| {
+                let pairs = values.iter().zip(&measured.values).map(|(a, b)| a - b);
+                thinned(&timed(&mut pairs.enumerate()), STRETCHES)
+            };
+            let figure = Figure::new("time [s]", &format!("error of {name}{}", bracketed(unit)))
+                .line("before", "baseline", residual(baseline))
+                .line("after", "trained", residual(simulated));
+            page.raw(&figure.svg());
+        }
+    }
+
+    fn table(&self, page: &mut Page) {
+        page.heading("Epochs");
+        let mut header = vec!["#epoch".to_string(), "#loss".into(), "#rate".into()];
+        for (name, unit) in &self.outputs {
+            for length in &self.lengths {
+                header.push(format!("#{name}, {length} steps{}", bracketed(unit)));
+            }
+            header.push(format!("#{name}, simulation{}", bracketed(unit)));
+        }
+        let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.5e}"));
+        let row = |epoch: &Epoch| {
+            let mut row =
+                vec![epoch.epoch.to_string(), number(epoch.loss), number(Some(epoch.rate))];
+            for o in 0..self.outputs.len() {
+                let score = epoch.score.as_ref();
+                for i in 0..self.lengths.len() {
+                    row.push(number(score.and_then(|s| Some(*s.ahead.get(i)?.get(o)?))));
+                }
+                row.push(number(score.and_then(|s| s.simulation.get(o).copied())));
+            }
+            row
+        };
+        // the best epoch and about thirty others
+        let every = self.fit.history.len().div_ceil(30).max(1);
+        let kept = self.fit.history.iter();
+        let kept = kept.filter(|e| e.epoch % every == 0 || e.epoch == self.fit.epoch);
+        let rows: Vec<Vec<String>> = kept.map(row).collect();
+        page.table(&header.iter().map(|h| &h[..]).collect::<Vec<_>>(), &rows);
+    }
+}
+
+fn bracketed(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" [{unit}]") }
+}

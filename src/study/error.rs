@@ -1,0 +1,105 @@
+//! What can go wrong in a study.
+
+use crate::data::DataError;
+use crate::evaluate::EvaluateError;
+use crate::fault::{Explain, Kind};
+use crate::file::FileError;
+use crate::system::SystemError;
+use crate::train::TrainError;
+
+/// A study that cannot begin or go on.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StudyError {
+    /// A record cannot be made or read.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// A simulation cannot be run.
+    #[error(transparent)]
+    Evaluate(#[from] EvaluateError),
+    /// A system does not fit together.
+    #[error(transparent)]
+    System(#[from] SystemError),
+    /// A model file is wrong.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A training cannot begin or go on.
+    #[error(transparent)]
+    Train(#[from] TrainError),
+    /// A setting out of range.
+    #[error("`{name}` is {found}, which is not {expected}")]
+    Setting {
+        /// Name of the setting.
+        name: String,
+        /// Its value.
+        found: String,
+        /// What it may be.
+        expected: String,
+    },
+    /// The true system left the finite numbers.
+    #[error("the simulated system diverges at sample {sample}")]
+    Diverges {
+        /// The sample, the transient included.
+        sample: usize,
+    },
+    /// Results of different studies, or none.
+    #[error("{path}: {reason}")]
+    Merge {
+        /// File or folder.
+        path: String,
+        /// What is wrong with it.
+        reason: String,
+    },
+}
+
+impl StudyError {
+    pub(super) fn merge(path: &std::path::Path, reason: impl ToString) -> Self {
+        Self::Merge { path: path.display().to_string(), reason: reason.to_string() }
+    }
+
+    pub(super) fn setting(name: &str, found: impl ToString, expected: &str) -> Self {
+        Self::Setting { name: name.into(), found: found.to_string(), expected: expected.into() }
+    }
+}
+
+impl Explain for StudyError {
+    fn kind(&self) -> Kind {
+        match self {
+            Self::Data(error) => error.kind(),
+            Self::Evaluate(error) => error.kind(),
+            Self::System(error) => error.kind(),
+            Self::File(error) => error.kind(),
+            Self::Train(error) => error.kind(),
+            Self::Diverges { .. } => Kind::Work,
+            Self::Setting { .. } | Self::Merge { .. } => Kind::Input,
+        }
+    }
+
+    fn hint(&self) -> Option<String> {
+        match self {
+            Self::Data(error) => error.hint(),
+            Self::Evaluate(error) => error.hint(),
+            Self::System(error) => error.hint(),
+            Self::File(error) => error.hint(),
+            Self::Train(error) => error.hint(),
+            Self::Diverges { .. } => {
+                Some("excite it less, take more substeps, or hide a smaller effect".into())
+            }
+            Self::Setting { .. } => Some("change it in the configuration".into()),
+            Self::Merge { .. } => {
+                Some("merge folders that one configuration and one seed have made".into())
+            }
+        }
+    }
+
+    fn place(&self) -> crate::fault::Place {
+        match self {
+            Self::Data(error) => error.place(),
+            Self::Evaluate(error) => error.place(),
+            Self::System(error) => error.place(),
+            Self::File(error) => error.place(),
+            Self::Train(error) => error.place(),
+            _ => crate::fault::Place::default(),
+        }
+    }
+}

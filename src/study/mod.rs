@@ -1,0 +1,25 @@
+//! Repeats the whole over seeds, starts and hidden effects.
+//!
+//! [`Generate`] makes records whose truth is known. A [`MonteCarlo`] trains one model from
+//! several starts with several seeds; its [`Job`]s can be shared among machines, and what
+//! comes out does not depend on how they were shared. [`NoiseStudy`] tells how far each
+//! start's encoder is from the states at several noise levels.
+
+mod error;
+mod figures;
+mod generate;
+mod job;
+mod monte_carlo;
+mod noise_study;
+mod result;
+mod run;
+
+pub use error::StudyError;
+pub use figures::StudyReport;
+pub use generate::{Generate, Generated, Truth};
+pub use job::{Done, Frame, Job};
+pub use monte_carlo::{MonteCarlo, Start};
+pub use noise_study::{Level, NoiseStudy};
+pub use result::{Quartiles, StudyResult, Summary};
+
+pub(crate) use monte_carlo::Inputs;

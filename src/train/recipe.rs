@@ -1,0 +1,115 @@
+//! A whole training by its settings: structure, encoder, first weights, learning.
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::Record;
+use crate::encoder::{
+    Baseline as Known, Encoder, EncoderInitialiser, Linearised, ResNetEncoder, Spread, Started,
+    Window,
+};
+use crate::lfr::{Baseline, Scales, Structure};
+use crate::system::System;
+
+use super::{Augmented, TrainError, Trainer};
+
+/// Everything about a training but the model, the records and the seed: what a
+/// configuration file holds. The defaults are those of Hoekstra et al., Sec. 4.3: a static
+/// parallel augmentation and an encoder of two layers of 16 units each, 9 past samples,
+/// started by the reconstructability map.
+///
+/// # Example
+///
+/// ```
+/// use lacuna::train::Recipe;
+///
+/// let recipe: Recipe = toml::from_str(
+///     "[encoder.resnet]\nn_a = 9\nn_b = 9\n[initialiser.least_squares]\n[training]\nepochs = 50",
+/// )?;
+/// assert_eq!(recipe.training.epochs, 50);
+/// assert_eq!(recipe.initialiser.typetag_name(), "least_squares");
+/// # Ok::<(), toml::de::Error>(())
+/// ```
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Recipe {
+    /// Where the learned part stands, and its size.
+    pub structure: Structure,
+    /// What estimates the first state of every section.
+    pub encoder: Box<dyn Encoder>,
+    /// The encoder's first weights.
+    pub initialiser: Box<dyn EncoderInitialiser>,
+    /// Names of baseline parameters that are estimated too.
+    pub free: Vec<String>,
+    /// The learning itself.
+    pub training: Trainer,
+}
+
+impl Default for Recipe {
+    fn default() -> Self {
+        Self {
+            structure: Structure::default(),
+            encoder: Box::new(ResNetEncoder::new(Window::past(9), &[16, 16])),
+            initialiser: Box::new(Linearised::default()),
+            free: vec![],
+            training: Trainer::default(),
+        }
+    }
+}
+
+impl Recipe {
+    /// The model before training, scaled by the longest of the records, and what the
+    /// initialiser says about its encoder.
+    ///
+    /// # Errors
+    ///
+    /// If the model, the records and the settings do not fit together.
+    pub fn start(
+        &self,
+        system: &System,
+        records: &[Record],
+        seed: u64,
+    ) -> Result<(Augmented, Started), TrainError> {
+        let augmented_states = self.structure.augmented_states;
+        let longest = records.iter().enumerate().max_by_key(|(i, r)| (r.len(), usize::MAX - i));
+        let Some((_, record)) = longest else {
+            let reach = self.encoder.window().reach();
+            return Err(TrainError::TooShort { which: "training", length: 1, reach });
+        };
+        let known = Known::new(system, record)?.augmented(augmented_states);
+        let mut encoder = self.encoder.clone();
+        let started = self.initialiser.initialise(encoder.as_mut(), &known, seed)?;
+        let scaling = known.scaling()?;
+        let pairs = |spreads: &[Spread]| spreads.iter().map(|s| (s.offset, s.scale)).collect();
+        let states = known.shape().baseline_states;
+        let scales = Scales {
+            states: pairs(&scaling.states[..states]),
+            inputs: pairs(&scaling.inputs),
+            outputs: pairs(&scaling.outputs),
+        };
+        let sampling_time = system
+            .sampling_time(Some(record.sampling_time))
+            .map_err(crate::encoder::EncoderError::from)?;
+        let baseline = Baseline {
+            system: system.clone(),
+            sampling_time,
+            free: self.free(system)?,
+            theta: None,
+        };
+        let model = self.structure.build(baseline, &scales, seed)?;
+        Ok((Augmented::new(model, encoder)?, started))
+    }
+
+    /// Positions of the free parameters.
+    fn free(&self, system: &System) -> Result<Vec<usize>, TrainError> {
+        let parameters = system.signals().parameters;
+        let position = |name: &String| {
+            parameters.iter().position(|own| own.name == *name).ok_or_else(|| {
+                let known: Vec<&str> = parameters.iter().map(|own| &own.name[..]).collect();
+                let found = format!("`{name}` (the model has {})", known.join(", "));
+                let expected = "a parameter of the model";
+                TrainError::Setting { name: "free", found, expected }
+            })
+        };
+        self.free.iter().map(position).collect()
+    }
+}

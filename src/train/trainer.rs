@@ -1,0 +1,140 @@
+//! The training itself.
+
+use serde::{Deserialize, Serialize};
+
+use crate::data::Record;
+use crate::optimise::Adam;
+
+use super::checkpoint::{Checkpoint, Fingerprint};
+use super::fit::{Fit, Follow};
+use super::shooting::Arithmetic;
+use super::steps::Steps;
+use super::validate::Validation;
+use super::{Augmented, TrainError};
+
+/// Joint training of an augmented model and its encoder on short sections of one or several
+/// records (Hoekstra et al., Sec. 2 and 4.3). The defaults are the paper's Table of
+/// hyperparameters; it gives no rate.
+///
+/// The same seed gives the same bits whatever the number of threads, and an interrupted run
+/// that is taken up again from its checkpoint ends with the bits of one that was not.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Trainer {
+    /// Samples in a section, T.
+    pub length: usize,
+    /// Sections in a step.
+    pub batch: usize,
+    /// Passes over all sections.
+    pub epochs: usize,
+    /// Decides the order of the sections.
+    pub seed: u64,
+    /// Step rule, with its rate, schedule, clipping and decay.
+    pub optimiser: Adam,
+    /// Arithmetic of loss and gradient.
+    pub arithmetic: Arithmetic,
+    /// Threads.
+    pub threads: usize,
+    /// What is computed on the validation records.
+    pub validation: Validation,
+    /// Epochs without a better model after which training ends; none: never.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub patience: Option<usize>,
+    /// Weight of the squared relative distance of free baseline parameters from their nominal
+    /// values.
+    pub penalty: f64,
+    /// Where progress is written down.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub checkpoint: Option<Checkpoint>,
+}
+
+impl Default for Trainer {
+    fn default() -> Self {
+        Self {
+            length: 200,
+            batch: 3000,
+            epochs: 2000,
+            seed: 0,
+            optimiser: Adam::default(),
+            arithmetic: Arithmetic::Double,
+            threads: 1,
+            validation: Validation::default(),
+            patience: None,
+            penalty: 1.0,
+            checkpoint: None,
+        }
+    }
+}
+
+impl Trainer {
+    /// Checks all settings.
+    ///
+    /// # Errors
+    ///
+    /// The first one out of range.
+    pub fn check(&self) -> Result<(), TrainError> {
+        let least = [
+            ("length", self.length),
+            ("batch", self.batch),
+            ("threads", self.threads),
+            ("validation.every", self.validation.every),
+            ("checkpoint.every", self.checkpoint.as_ref().map_or(1, |c| c.every)),
+        ];
+        for (name, value) in least {
+            if value == 0 {
+                return Err(TrainError::Setting {
+                    name,
+                    found: "0".into(),
+                    expected: "at least 1",
+                });
+            }
+        }
+        if !(self.penalty >= 0.0 && self.penalty.is_finite()) {
+            let (found, expected) = (self.penalty.to_string(), "a finite number of at least 0");
+            return Err(TrainError::Setting { name: "penalty", found, expected });
+        }
+        Ok(self.optimiser.check()?)
+    }
+
+    /// Trains a model on some records and keeps the one that is best on others; goes on from
+    /// the checkpoint if there is one.
+    ///
+    /// # Errors
+    ///
+    /// If something does not fit together, a file cannot be read or written, or the loss is
+    /// not finite however small the steps.
+    pub fn fit(
+        &self,
+        start: &Augmented,
+        training: &[Record],
+        validation: &[Record],
+        follow: &mut dyn Follow,
+    ) -> Result<Fit, TrainError> {
+        self.check()?;
+        let print = self.fingerprint(start, training, validation)?;
+        let steps = Steps::new(self, start, training, validation, print)?;
+        steps.go(follow)
+    }
+
+    /// Everything that decides how a run goes on; more epochs or other threads do not.
+    fn fingerprint(
+        &self,
+        start: &Augmented,
+        training: &[Record],
+        validation: &[Record],
+    ) -> Result<u64, TrainError> {
+        let own = Self { epochs: 0, threads: 1, checkpoint: None, patience: None, ..self.clone() };
+        let text = |what: Result<String, serde_json::Error>| {
+            what.map_err(|e| TrainError::File { path: "settings".into(), reason: e.to_string() })
+        };
+        let mut print = Fingerprint::new()
+            .bytes(text(serde_json::to_string(&own))?.as_bytes())
+            .bytes(text(serde_json::to_string(start))?.as_bytes());
+        for record in training.iter().chain(validation) {
+            for signal in record.inputs.iter().chain(&record.outputs) {
+                print = print.bytes(signal.name.as_bytes()).numbers(&signal.values);
+            }
+        }
+        Ok(print.finish())
+    }
+}
