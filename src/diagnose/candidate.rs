@@ -71,6 +71,11 @@ impl Candidate {
         (self.effect, &self.into, self.of.as_deref())
     }
 
+    /// The same, to keep.
+    pub fn name(&self) -> (String, String, Option<String>) {
+        (self.effect.into(), self.into.clone(), self.of.clone())
+    }
+
     /// Whether two candidates carry the same name.
     pub fn same_cause(&self, other: &Self) -> bool {
         self.triple() == other.triple()

@@ -67,6 +67,13 @@ impl Teller<'_, '_> {
                     });
                 }
             }
+            let mut said = vec![cause.name()];
+            indistinguishable.retain(|a: &Alternative| {
+                let name = (a.effect.clone(), a.into.clone(), a.of.clone());
+                let new = !said.contains(&name);
+                said.push(name);
+                new
+            });
             let runners_up = slot.others.iter().take(4);
             causes.push(Cause {
                 effect: cause.effect.into(),

@@ -85,12 +85,13 @@ struct Sharing<'a, 'b> {
     model: &'a Model,
     /// First candidate of each kind, whose plan the others use.
     kinds: Vec<(String, Arc<Candidate>)>,
+    grain: Grain,
 }
 
 impl Sharing<'_, '_> {
     fn job(&mut self, cause: &Arc<Candidate>, knobs: &[f64], blend: f64) -> Option<Job> {
         let (Wire::Stage(route), true) = (&cause.wire, cause.also_into.is_empty()) else {
-            return with_candidate(self.problem, self.model, cause, knobs, blend, Grain::Rough);
+            return with_candidate(self.problem, self.model, cause, knobs, blend, self.grain);
         };
         // same effect, same absent bounds, same need of a rate: the same compiled slot
         let absent: String = knobs.iter().map(|v| if v.is_finite() { 'f' } else { 'i' }).collect();
@@ -102,16 +103,10 @@ impl Sharing<'_, '_> {
                 cause.clone()
             }
         };
-        let clipped = cause.clipped(knobs, self.problem.step(Grain::Rough));
+        let clipped = cause.clipped(knobs, self.problem.step(self.grain));
         // the first one's sign rule must not clip this one's knobs
-        let mut job = with_candidate(
-            self.problem,
-            self.model,
-            &first,
-            &first.starts[0],
-            blend,
-            Grain::Rough,
-        )?;
+        let mut job =
+            with_candidate(self.problem, self.model, &first, &first.starts[0], blend, self.grain)?;
         let own = clipped.len();
         let at = job.lane.knobs.len() - own;
         job.lane.knobs[at..].copy_from_slice(&clipped);
@@ -143,13 +138,17 @@ pub(crate) fn screen(
         let sum: f64 = (0..problem.y.len()).map(of).sum();
         (sum / problem.y.len() as f64).sqrt()
     };
-    // probes are compared with the same steps without them
-    let job = problem.job(model, Grain::Rough)?;
-    let rough = problem.run(&[job], Span::Fit).swap_remove(0)?;
-    let rough = problem.residual(&rough, Part::Fit);
+    // probes are compared with the same steps without them; steps that were fine about the
+    // baseline may be too rough about this model
+    let rough = problem.job(model, Grain::Rough).and_then(|job| {
+        let y = problem.run(&[job], Span::Fit).swap_remove(0)?;
+        Some(problem.residual(&y, Part::Fit))
+    });
+    let grain = if rough.is_some() { Grain::Rough } else { Grain::Coarse };
+    let rough = rough.unwrap_or_else(|| r.clone());
     let residual = rms(&r);
     let gentle = (0.02 * spread).min(0.5 * residual);
-    let mut sharing = Sharing { problem, model, kinds: vec![] };
+    let mut sharing = Sharing { problem, model, kinds: vec![], grain };
     let at = Looking { problem, basis: &basis, r0: &r, left: &left };
     let mut best: Vec<Option<Scored>> = vec![None; candidates.len()];
     let mut per_start: Vec<Vec<(f64, usize, f64)>> = vec![vec![]; candidates.len()];

@@ -165,8 +165,12 @@ impl<'a, 'b> Search<'a, 'b> {
                 break;
             }
             let candidates = self.candidates(&model);
-            let found =
-                stage(self.problem, &self.nuisance, &model, &candidates, number == 0, REFITTED)?;
+            let Some(found) =
+                stage(self.problem, &self.nuisance, &model, &candidates, number == 0, REFITTED)
+            else {
+                full = false;
+                break;
+            };
             self.tell(at + 0.5 * step, "comparing explanations");
             let mut trials = found.trials;
             if number == 0 {

@@ -17,6 +17,10 @@ const LARGE_SHARE: f64 = 0.2;
 /// to be trusted and magnitudes are scanned.
 const SCAN_BELOW: f64 = 0.5;
 const SCAN_FAR: f64 = 0.2;
+/// Relative difference of two screens' figures below which they are those of twins.
+const TWIN: f64 = 1e-3;
+/// Twins that are refitted beside what was chosen, at most.
+const MOST_TWINS: usize = 4;
 /// From one size to the next.
 const RUNG: f64 = 2.5;
 /// Candidates whose sizes are looked at between the rungs too.
@@ -106,6 +110,24 @@ pub(crate) fn stage(
         }
     }
     chosen.truncate(most);
+    // an exact twin of what was chosen belongs to the same set, whatever came between
+    let twins: Vec<Scored> = screened
+        .scored
+        .iter()
+        .filter(|s| {
+            let alike = |a: f64, b: f64| (a - b).abs() < TWIN * b.abs();
+            let is_twin = |c: &Scored| {
+                alike(s.explained, c.explained)
+                    && alike(s.score, c.score)
+                    && s.cause.unknowns() == c.cause.unknowns()
+            };
+            chosen.iter().any(|(c, _)| is_twin(c))
+                && !chosen.iter().any(|(c, _)| c.cause.same_cause(&s.cause))
+        })
+        .take(MOST_TWINS)
+        .cloned()
+        .collect();
+    chosen.extend(twins.into_iter().map(|twin| (twin, None)));
     let trials = judge(problem, nuisance, model, &chosen, bar);
     screened.scored.truncate(200);
     Some(Stage { trials, screen: screened })
