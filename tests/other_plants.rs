@@ -50,7 +50,7 @@ fn all() -> Vec<(&'static Plant, Vec<Hidden>)> {
         (
             &CIRCUIT,
             vec![
-                hidden!("cubic", "coil", Some("current"), |s| coefficient(-1.0 * s)),
+                hidden!("cubic", "coil", Some("current"), |s| coefficient(-s)),
                 hidden!("quadratic", "leak", Some("charge_voltage"), |s| coefficient(-1e-4 * s)),
                 hidden!("saturation", "supply", Some("supply"), |s| format!(
                     "{{ low = {:?}, high = {:?} }}",
@@ -78,10 +78,8 @@ fn all() -> Vec<(&'static Plant, Vec<Hidden>)> {
                 hidden!("linear", "inflow_2", Some("level_2"), |s| coefficient(-0.002 * s)),
                 hidden!("parameter", "a2", None, |s| value(0.12 * (1.0 + s))),
                 hidden!("bias", "level", None, |s| value(0.1 * s)),
-                hidden!("dead_zone", "pump", Some("pump"), |s| format!(
-                    "{{ slope = 1.0, width = {:?} }}",
-                    0.1 * s
-                )),
+                // (a dead zone that the pump never enters would be an offset, nothing else)
+                hidden!("quadratic", "pump", Some("pump"), |s| coefficient(-0.05 * s)),
                 hidden!("drift", "b", Some("time"), |s| format!("{{ rate = {:?} }}", 1e-6 * s)),
             ],
         ),
