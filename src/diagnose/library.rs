@@ -9,7 +9,7 @@ use crate::effect::{
     CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, SignRule, View, curve,
 };
 use crate::register;
-use crate::system::{AlsoInto, Origin, Route};
+use crate::system::{Origin, Route};
 
 /// Which effects and parameters may be causes.
 #[derive(Debug, Clone, Default)]
@@ -23,7 +23,7 @@ pub(crate) struct Allowed {
 }
 
 impl Allowed {
-    fn effect(&self, name: &str) -> bool {
+    pub(super) fn effect(&self, name: &str) -> bool {
         (self.only.is_empty() || self.only.iter().any(|n| n == name))
             && !self.without.iter().any(|n| n == name)
     }
@@ -31,17 +31,17 @@ impl Allowed {
 
 /// A place for an effect: entries of the target and source tables.
 #[derive(Debug, Clone, Copy)]
-struct Spot {
-    target: usize,
-    source: Option<usize>,
-    own_path: bool,
+pub(super) struct Spot {
+    pub(super) target: usize,
+    pub(super) source: Option<usize>,
+    pub(super) own_path: bool,
 }
 
-struct Builder<'a, 'b> {
-    problem: &'a Problem<'b>,
-    nominal: &'a Nominal,
-    lines: Vec<f64>,
-    found: Vec<Candidate>,
+pub(super) struct Builder<'a, 'b> {
+    pub(super) problem: &'a Problem<'b>,
+    pub(super) nominal: &'a Nominal,
+    pub(super) lines: Vec<f64>,
+    pub(super) found: Vec<Candidate>,
 }
 
 /// All candidates for a model, given its residual lines (rad/s).
@@ -81,7 +81,7 @@ pub(crate) fn library(
 
 impl Builder<'_, '_> {
     /// Own channels and inputs that push the same way, the preferred one first.
-    fn channels(&self) -> Vec<Vec<(usize, f64)>> {
+    pub(super) fn channels(&self) -> Vec<Vec<(usize, f64)>> {
         let mut groups: Vec<Vec<(usize, f64)>> = vec![];
         let mut order: Vec<usize> = (0..self.problem.base.targets.entries.len())
             .filter(|&e| !matches!(self.problem.base.targets.entries[e].1, Origin::Output(_)))
@@ -99,7 +99,7 @@ impl Builder<'_, '_> {
         groups
     }
 
-    fn preference(&self, target: usize) -> Preference {
+    pub(super) fn preference(&self, target: usize) -> Preference {
         match self.problem.base.targets.entries[target].1 {
             Origin::Own(_) if self.problem.base.declared_channels => Preference::DeclaredChannel,
             Origin::Own(_) => Preference::DefaultChannel,
@@ -109,7 +109,7 @@ impl Builder<'_, '_> {
     }
 
     /// Named sources except time, each value once.
-    fn sources(&self) -> Vec<usize> {
+    pub(super) fn sources(&self) -> Vec<usize> {
         let base = &self.problem.base;
         let mut kept: Vec<usize> = vec![];
         for entry in 0..base.sources.named - 1 {
@@ -120,254 +120,14 @@ impl Builder<'_, '_> {
         kept
     }
 
-    fn time(&self) -> usize {
+    pub(super) fn time(&self) -> usize {
         self.problem.base.sources.named - 1
-    }
-
-    fn parameters(
-        &mut self,
-        name: &'static str,
-        shape: &dyn CandidateEffect,
-        card: &EffectCard,
-        model: &Model,
-        allowed: &Allowed,
-    ) {
-        let signals = &self.problem.base.signals;
-        let duration = self.problem.len() as f64 * self.problem.base.sampling_time;
-        for (p, parameter) in signals.parameters.iter().enumerate() {
-            if parameter.fixed || allowed.fixed.contains(&parameter.name) {
-                continue;
-            }
-            let value = model.theta[p];
-            let mut card = card.clone();
-            card.knobs[0].value = 0.0;
-            let changes = card.mechanism == Mechanism::Parameter;
-            // a change of the value, kept inside the parameter's own bounds and of its sign
-            let floor = if value > 0.0 { parameter.min.max(0.05 * value) } else { parameter.min };
-            let ceiling = if value < 0.0 { parameter.max.min(0.05 * value) } else { parameter.max };
-            let scale = if value == 0.0 { 1.0 } else { value.abs() };
-            let free = (f64::NEG_INFINITY, f64::INFINITY);
-            let range = if changes { (floor - value, ceiling - value) } else { free };
-            self.found.push(Candidate {
-                effect: name,
-                shape: shape.boxed(),
-                wire: if changes { Wire::Parameter(p) } else { Wire::Drift(p) },
-                into: parameter.name.clone(),
-                of: (!changes).then(|| "time".into()),
-                also_into: vec![],
-                preference: if changes {
-                    Preference::Parameter
-                } else {
-                    Preference::DeclaredChannel
-                },
-                place: Preference::Parameter,
-                linear: vec![0],
-                refine: vec![],
-                starts: vec![vec![0.0]],
-                min: vec![range.0],
-                max: vec![range.1],
-                thresholds: false,
-                sign: 0.0,
-                probe: if changes { 0.01 * scale } else { 0.02 * scale / duration },
-                stiffness: 0.0,
-                named: Named::default(),
-                units: (parameter.unit.clone(), "s".into()),
-                twins: vec![],
-                card,
-            });
-        }
-    }
-
-    /// Into inputs and outputs, on their own path, or of nothing, or of time.
-    fn paths(&mut self, name: &'static str, shape: &dyn CandidateEffect, card: &EffectCard) {
-        let base = self.problem.base.clone();
-        for (target, (_, origin)) in base.targets.entries.iter().enumerate() {
-            let wanted = match origin {
-                Origin::Input(_) => card.places.input,
-                Origin::Output(_) => card.places.output,
-                _ => false,
-            };
-            if !wanted {
-                continue;
-            }
-            let source = base.sources.at(*origin);
-            let spot = match card.needs {
-                Needs::Nothing => Spot { target, source: None, own_path: false },
-                Needs::Time | Needs::AngleOrTime => {
-                    Spot { target, source: Some(self.time()), own_path: false }
-                }
-                _ => Spot { target, source, own_path: true },
-            };
-            self.push(name, shape, card, spot, 0.0, None, vec![]);
-        }
-    }
-
-    /// Into one group of channels that push the same way.
-    fn channel_paths(
-        &mut self,
-        name: &'static str,
-        shape: &dyn CandidateEffect,
-        card: &EffectCard,
-        group: &[(usize, f64)],
-        sources: &[usize],
-    ) {
-        let base = self.problem.base.clone();
-        let target = group[0].0;
-        let input_of_group = |source: usize| {
-            matches!(base.sources.entries[source].1, Origin::Input(_))
-                && group
-                    .iter()
-                    .any(|&(t, _)| base.targets.entries[t].1 == base.sources.entries[source].1)
-        };
-        // an input that only has its own path is no channel for the rest
-        let twins = |of: Option<usize>| {
-            let of = of.map(|s| base.sources.entries[s].0.name.clone());
-            group[1..]
-                .iter()
-                .map(|&(t, factor)| (base.targets.entries[t].0.name.clone(), of.clone(), factor))
-                .collect::<Vec<_>>()
-        };
-        let is_input = matches!(base.targets.entries[target].1, Origin::Input(_));
-        match card.needs {
-            Needs::Nothing => {
-                // the path of an input has its own offset already
-                if !is_input {
-                    let spot = Spot { target, source: None, own_path: false };
-                    self.push(name, shape, card, spot, 0.0, None, twins(None));
-                }
-                return;
-            }
-            Needs::AngleOrTime if !is_input => {
-                let time = self.time();
-                let spot = Spot { target, source: Some(time), own_path: false };
-                self.push(name, shape, card, spot, 0.0, None, twins(Some(time)));
-            }
-            Needs::Time => return,
-            _ => {}
-        }
-        for &source in sources {
-            if input_of_group(source) {
-                continue; // the same as a curve in the input's own path
-            }
-            let spot = Spot { target, source: Some(source), own_path: false };
-            let signal = &base.sources.entries[source].0;
-            let sign_of = |entry: usize| self.nominal.push(self.problem, target, entry);
-            let (push, rate) = match card.needs {
-                Needs::Velocity => {
-                    let velocity = match &signal.quantity {
-                        Some(quantity) => quantity.is_velocity(),
-                        None => true,
-                    };
-                    let known_position = base.rates.rate(source).is_some();
-                    let series = self.nominal.series(source);
-                    let both = series.iter().any(|v| *v < 0.0) && series.iter().any(|v| *v > 0.0);
-                    let Some(d) = sign_of(source) else { continue };
-                    if !velocity
-                        || !both
-                        || d == 0.0
-                        || known_position
-                            && signal.quantity.is_none()
-                            && !base.rates.is_rate(source)
-                    {
-                        continue;
-                    }
-                    (d, None)
-                }
-                Needs::CoordinateWithRate => {
-                    let Some(rate) = base.rates.rate(source) else { continue };
-                    let Some(d) = sign_of(rate.0).filter(|d| *d != 0.0) else { continue };
-                    (d * rate.1, Some(rate))
-                }
-                Needs::Motion => {
-                    let is_velocity = match &signal.quantity {
-                        Some(quantity) => quantity.is_velocity(),
-                        None => base.rates.is_rate(source),
-                    };
-                    // a velocity whose position is offered too is the same motion
-                    let position = sources.iter().any(|&other| {
-                        base.rates.rate(other).is_some_and(|(r, _)| base.rates.same(r, source))
-                    });
-                    let rate =
-                        if is_velocity { Some((source, 1.0)) } else { base.rates.rate(source) };
-                    let Some(rate) = rate.filter(|_| !(is_velocity && position)) else { continue };
-                    let Some(d) = sign_of(rate.0).filter(|d| *d != 0.0) else { continue };
-                    (d * rate.1, Some(rate))
-                }
-                Needs::AngleOrTime => {
-                    let angle = signal.unit == "rad"
-                        && signal
-                            .quantity
-                            .as_ref()
-                            .is_none_or(|q| matches!(q.0.as_str(), "angle" | "position"));
-                    if !angle {
-                        continue;
-                    }
-                    (0.0, None)
-                }
-                _ => (0.0, None),
-            };
-            self.push(name, shape, card, spot, push, rate, twins(Some(source)));
-            self.passed_on(name, shape, card, target, source);
-        }
-    }
-
-    /// What leaves one store and enters another: the same law with the other sign into a
-    /// second channel of the same unit. `source` must be the level of the first store alone.
-    fn passed_on(
-        &mut self,
-        name: &'static str,
-        shape: &dyn CandidateEffect,
-        card: &EffectCard,
-        target: usize,
-        source: usize,
-    ) {
-        let base = self.problem.base.clone();
-        let own = |t: usize| matches!(base.targets.entries[t].1, Origin::Own(_));
-        let moves = base.rates.rate(source).is_some() || base.rates.is_rate(source);
-        let stores = base.declared_channels && own(target) && !moves;
-        if !stores || card.needs != Needs::Coordinate || card.states > 0 {
-            return;
-        }
-        let fills = |t: usize| self.nominal.push(self.problem, t, source).is_some_and(|d| d != 0.0);
-        if !fills(target) {
-            return;
-        }
-        let unit = &base.targets.entries[target].0.unit;
-        let others: Vec<usize> = (0..base.targets.entries.len())
-            .filter(|&t| t != target && own(t) && base.targets.entries[t].0.unit == *unit)
-            .filter(|&t| !fills(t))
-            .collect();
-        for other in others {
-            let from = self.found.len();
-            let spot = Spot { target, source: Some(source), own_path: false };
-            self.push(name, shape, card, spot, 0.0, None, vec![]);
-            let into = base.targets.entries[other].0.name.clone();
-            for candidate in &mut self.found[from..] {
-                candidate.also_into = vec![AlsoInto::Opposite(into.clone())];
-            }
-        }
-    }
-
-    /// Beside the model: into an output, of an input.
-    fn beside(&mut self, name: &'static str, shape: &dyn CandidateEffect, card: &EffectCard) {
-        let base = self.problem.base.clone();
-        for (target, (_, origin)) in base.targets.entries.iter().enumerate() {
-            if !matches!(origin, Origin::Output(_)) {
-                continue;
-            }
-            for (source, (_, origin)) in base.sources.entries.iter().enumerate() {
-                if matches!(origin, Origin::Input(_)) {
-                    let spot = Spot { target, source: Some(source), own_path: false };
-                    self.push(name, shape, card, spot, 0.0, None, vec![]);
-                }
-            }
-        }
     }
 
     /// Adds the candidates of one effect at one spot: one per pattern of absent bounds and
     /// per choice.
     #[allow(clippy::too_many_arguments)]
-    fn push(
+    pub(super) fn push(
         &mut self,
         name: &'static str,
         shape: &dyn CandidateEffect,
@@ -468,14 +228,14 @@ impl Builder<'_, '_> {
     }
 
     /// Quantity of a source: as declared, or velocity where it is found to be one.
-    fn quantity(&self, source: usize) -> Option<crate::model::Quantity> {
+    pub(super) fn quantity(&self, source: usize) -> Option<crate::model::Quantity> {
         let base = &self.problem.base;
         let declared = base.sources.entries[source].0.quantity.clone();
         declared.or_else(|| base.rates.is_rate(source).then(crate::model::Quantity::velocity))
     }
 
     /// Root mean square of w along the baseline for a coefficient of 1.
-    fn shape_size(
+    pub(super) fn shape_size(
         &self,
         shape: &dyn CandidateEffect,
         card: &EffectCard,

@@ -7,7 +7,6 @@ use std::sync::{Arc, Mutex};
 use rayon::prelude::*;
 
 use super::candidate::{Candidate, Wire};
-use crate::statistics::{deviation, mixture, rms};
 use crate::system::{Base, Drive, Lane, Placed, Plan, System, SystemError};
 
 /// Lanes that are simulated side by side in one piece of work.
@@ -54,10 +53,6 @@ pub(crate) struct Job {
 /// Outputs of one simulation, `None` where it diverged.
 pub(crate) type Simulated = Option<Arc<Vec<Vec<f64>>>>;
 
-/// Error of rough steps, as a share of the outputs' spread, at which the direction of a
-/// small change is still right.
-const ROUGH: f64 = 0.02;
-
 /// Which integration steps a simulation takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Grain {
@@ -96,8 +91,8 @@ const SKIP: usize = 20;
 pub(crate) struct Problem<'a> {
     pub system: &'a System,
     pub base: Arc<Base>,
-    coarse: Arc<Base>,
-    rough: Arc<Base>,
+    pub(super) coarse: Arc<Base>,
+    pub(super) rough: Arc<Base>,
     pub drive: Drive,
     fit_drive: Drive,
     /// Measured outputs; 0 where weight is 0.
@@ -109,11 +104,11 @@ pub(crate) struct Problem<'a> {
     /// Scale of each output: residuals are divided by it before outputs are added up.
     pub scale: Vec<f64>,
     /// Samples that count: those that are fitted, those that choose.
-    fit: Vec<Range<usize>>,
-    choose: Vec<Range<usize>>,
+    pub(super) fit: Vec<Range<usize>>,
+    pub(super) choose: Vec<Range<usize>>,
     /// What coarse steps must be corrected by, from the last call of `correct`.
-    correction: Option<Vec<Vec<f64>>>,
-    plans: Mutex<HashMap<(Grain, Vec<String>), Arc<Plan>>>,
+    pub(super) correction: Option<Vec<Vec<f64>>>,
+    pub(super) plans: Mutex<HashMap<(Grain, Vec<String>), Arc<Plan>>>,
 }
 
 impl<'a> Problem<'a> {
@@ -341,168 +336,6 @@ impl<'a> Problem<'a> {
     pub fn simulate(&self, model: &Model, grain: Grain) -> Simulated {
         let job = self.job(model, grain)?;
         self.run(&[job], Span::Whole).swap_remove(0)
-    }
-
-    /// Picks the fewest steps whose error about this model is far below its residual, and
-    /// corrects coarse simulations by it from now on.
-    pub fn coarsen(&mut self, model: &Model) {
-        self.correction = None;
-        let Some(fine) = self.simulate(model, Grain::Fine) else { return };
-        let residual = self.distance(&fine, &self.y);
-        let spread: f64 = self
-            .y
-            .iter()
-            .zip(&self.scale)
-            .enumerate()
-            .map(|(o, (y, s))| (deviation(&self.counted(o, y, Part::All)) / s).powi(2))
-            .sum::<f64>()
-            .sqrt();
-        let allowed = (0.25 * residual).min(0.01 * spread);
-        let n = self.base.substeps;
-        let mut tried = vec![1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 50, 100, 200, 500, 1000];
-        tried.retain(|&count| count <= n / 2);
-        let mut rough = None;
-        for count in tried {
-            let Ok(mut base) = Base::new(
-                self.system.model.as_ref(),
-                &self.system.sampling,
-                self.base.sampling_time,
-            ) else {
-                return;
-            };
-            base.substeps = count;
-            self.take_steps(Arc::new(base), None);
-            let Some(coarse) = self.simulate(model, Grain::Coarse) else { continue };
-            let off = self.distance(&coarse, &fine);
-            if off < ROUGH * spread && rough.is_none() {
-                rough = Some(self.coarse.clone());
-            }
-            if off < allowed {
-                self.take_steps(self.coarse.clone(), rough);
-                self.correct(model, &fine);
-                return;
-            }
-        }
-        self.take_steps(self.base.clone(), rough);
-    }
-
-    /// Sets what coarse and rough steps are.
-    fn take_steps(&mut self, coarse: Arc<Base>, rough: Option<Arc<Base>>) {
-        self.rough = rough.unwrap_or(coarse.clone());
-        self.coarse = coarse;
-        if let Ok(mut plans) = self.plans.lock() {
-            plans.retain(|key, _| key.0 == Grain::Fine);
-        }
-    }
-
-    /// Corrects coarse simulations by their error about this model.
-    pub fn recorrect(&mut self, model: &Model) {
-        if self.coarse.substeps == self.base.substeps {
-            return;
-        }
-        self.correction = None;
-        if let Some(fine) = self.simulate(model, Grain::Fine) {
-            self.correct(model, &fine);
-        }
-    }
-
-    fn correct(&mut self, model: &Model, fine: &[Vec<f64>]) {
-        self.correction = None;
-        let Some(coarse) = self.simulate(model, Grain::Coarse) else { return };
-        let off = |(f, c): (&Vec<f64>, &Vec<f64>)| {
-            let difference = f.iter().zip(c).map(|(f, c)| f - c);
-            difference.map(|d| if d.is_finite() { d } else { 0.0 }).collect()
-        };
-        self.correction = Some(fine.iter().zip(coarse.iter()).map(off).collect());
-    }
-
-    /// Root mean square over all outputs of what counts, in units of the scales.
-    fn distance(&self, a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
-        let mut sum = 0.0;
-        let mut count = 0.0;
-        for o in 0..self.y.len() {
-            for k in self.samples(Part::All).filter(|&k| self.weight[o][k] > 0.0) {
-                sum += ((a[o][k] - b[o][k]) / self.scale[o]).powi(2);
-                count += 1.0;
-            }
-        }
-        (sum / f64::max(count, 1.0)).sqrt()
-    }
-
-    /// Sets the outputs' scales to what this simulation leaves of each.
-    pub fn rescale(&mut self, yhat: &[Vec<f64>]) {
-        if self.y.len() < 2 {
-            return;
-        }
-        for o in 0..self.y.len() {
-            let off: Vec<f64> = self.y[o].iter().zip(&yhat[o]).map(|(a, b)| a - b).collect();
-            let r = self.counted(o, &off, Part::All);
-            let left = rms(&r);
-            if left > 0.0 && left.is_finite() {
-                self.scale[o] = left;
-            }
-        }
-    }
-
-    /// Samples that count in a part.
-    pub fn samples(&self, part: Part) -> impl Iterator<Item = usize> + '_ {
-        let (a, b): (&[Range<usize>], &[Range<usize>]) = match part {
-            Part::Fit => (&self.fit, &[]),
-            Part::Choose => (&self.choose, &[]),
-            Part::All => (&self.fit, &self.choose),
-        };
-        a.iter().chain(b).cloned().flatten()
-    }
-
-    /// Weighted residuals y - yhat over a part, outputs one after the other.
-    pub fn residual(&self, yhat: &[Vec<f64>], part: Part) -> Vec<f64> {
-        let mut r = vec![];
-        for o in 0..self.y.len() {
-            let over = 1.0 / self.scale[o];
-            let (y, yhat, weight) = (&self.y[o], &yhat[o], &self.weight[o]);
-            r.extend(
-                self.samples(part).map(
-                    |k| {
-                        if weight[k] > 0.0 { (y[k] - yhat[k]) * over } else { 0.0 }
-                    },
-                ),
-            );
-        }
-        r
-    }
-
-    /// One output's values over a part, where they count.
-    pub fn counted(&self, o: usize, values: &[f64], part: Part) -> Vec<f64> {
-        self.samples(part).filter(|&k| self.weight[o][k] > 0.0).map(|k| values[k]).collect()
-    }
-
-    /// Products of two stacked series, added over outputs: one value per sample.
-    pub fn per_sample(&self, a: &[f64], b: &[f64]) -> Vec<f64> {
-        let n = a.len() / self.y.len().max(1);
-        let mut q: Vec<f64> = a[..n].iter().zip(&b[..n]).map(|(a, b)| a * b).collect();
-        for o in 1..self.y.len() {
-            for (k, q) in q.iter_mut().enumerate() {
-                *q += a[o * n + k] * b[o * n + k];
-            }
-        }
-        q
-    }
-
-    /// Score that b is better than a on a part.
-    pub fn better(&self, a: &[Vec<f64>], b: &[Vec<f64>], part: Part) -> f64 {
-        let ra = self.residual(a, part);
-        let rb = self.residual(b, part);
-        let f: Vec<f64> = ra.iter().zip(&rb).map(|(a, b)| a - b).collect();
-        let ff = self.per_sample(&f, &f);
-        if ff.iter().sum::<f64>() < 1e-24 * ra.iter().map(|r| r * r).sum::<f64>() {
-            return 0.0;
-        }
-        mixture(&ff, &self.per_sample(&f, &ra))
-    }
-
-    /// Mean square of the residual on a part, in units of the scales.
-    pub fn mean_square(&self, yhat: &[Vec<f64>], part: Part) -> f64 {
-        rms(&self.residual(yhat, part)).powi(2)
     }
 }
 

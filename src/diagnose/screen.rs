@@ -2,17 +2,14 @@
 
 use std::sync::Arc;
 
-use super::candidate::{Candidate, Wire};
+use super::candidate::Candidate;
 use super::nuisance::Nuisance;
-use super::problem::{Grain, Job, Model, Part, Problem, Span};
+use super::probes::{Probe, Sharing, steer};
+use super::problem::{Grain, Model, Part, Problem, Span};
 use crate::statistics::{add_to_basis, deviation, dot, project, rms, wald};
 
-/// Simulations whose outputs are held at once.
-const CHUNK: usize = 512;
 /// Candidates that are probed at the residual's own size too.
 const SECANTS: usize = 48;
-/// Attempts to hit a target size.
-const ATTEMPTS: usize = 6;
 
 /// What the screen says of one candidate.
 #[derive(Debug, Clone)]
@@ -45,76 +42,6 @@ pub(crate) struct Screen {
     pub far: f64,
     /// Probe columns tried.
     pub columns: usize,
-}
-
-/// A probe under way.
-#[derive(Debug, Clone)]
-struct Probe {
-    candidate: usize,
-    start: usize,
-    /// Position in `linear`.
-    which: usize,
-    size: f64,
-    done: bool,
-    failed: bool,
-}
-
-/// The simulation of a model with one more cause at given knobs, wired by the lane so that
-/// candidates of one kind share a plan.
-pub(crate) fn with_candidate(
-    problem: &Problem<'_>,
-    model: &Model,
-    cause: &Arc<Candidate>,
-    knobs: &[f64],
-    blend: f64,
-    grain: Grain,
-) -> Option<Job> {
-    let mut job = problem.job(&model.with(cause, knobs.to_vec()), grain)?;
-    if blend != 1.0 {
-        let slots = job.plan.slots.len();
-        let mut gains = vec![1.0; slots];
-        *gains.last_mut()? = blend;
-        job.lane.gains = gains;
-    }
-    Some(job)
-}
-
-/// Jobs of many candidates of the same effect share one plan, each lane with its own route.
-struct Sharing<'a, 'b> {
-    problem: &'a Problem<'b>,
-    model: &'a Model,
-    /// First candidate of each kind, whose plan the others use.
-    kinds: Vec<(String, Arc<Candidate>)>,
-    grain: Grain,
-}
-
-impl Sharing<'_, '_> {
-    fn job(&mut self, cause: &Arc<Candidate>, knobs: &[f64], blend: f64) -> Option<Job> {
-        let (Wire::Stage(route), true) = (&cause.wire, cause.also_into.is_empty()) else {
-            return with_candidate(self.problem, self.model, cause, knobs, blend, self.grain);
-        };
-        // same effect, same absent bounds, same need of a rate: the same compiled slot
-        let absent: String = knobs.iter().map(|v| if v.is_finite() { 'f' } else { 'i' }).collect();
-        let kind = format!("{}{absent}{}", cause.effect, route.rate.1 != 0.0);
-        let first = match self.kinds.iter().find(|(name, _)| *name == kind) {
-            Some((_, first)) => first.clone(),
-            None => {
-                self.kinds.push((kind, cause.clone()));
-                cause.clone()
-            }
-        };
-        let clipped = cause.clipped(knobs, self.problem.step(self.grain));
-        // the first one's sign rule must not clip this one's knobs
-        let mut job =
-            with_candidate(self.problem, self.model, &first, &first.starts[0], blend, self.grain)?;
-        let own = clipped.len();
-        let at = job.lane.knobs.len() - own;
-        job.lane.knobs[at..].copy_from_slice(&clipped);
-        let mut routes = vec![None; job.plan.slots.len()];
-        *routes.last_mut()? = Some(*route);
-        job.lane.routes = routes;
-        Some(job)
-    }
 }
 
 /// Screens all candidates on top of a model.
@@ -235,93 +162,6 @@ fn keep(best: &mut Option<Scored>, scored: Scored) {
     if best.as_ref().is_none_or(|b| scored.explained > b.explained) {
         *best = Some(scored);
     }
-}
-
-/// Simulates probes until each has an effect between `share * target` and three times the
-/// target; gives back the effect per unit of those that have.
-fn steer(
-    problem: &Problem<'_>,
-    sharing: &mut Sharing<'_, '_>,
-    candidates: &[Arc<Candidate>],
-    probes: &mut [Probe],
-    r0: &[f64],
-    (share, target): (f64, f64),
-    tangent: bool,
-) -> Vec<(Probe, Vec<f64>)> {
-    let mut hits = vec![];
-    for attempt in 0..ATTEMPTS {
-        let open: Vec<usize> =
-            (0..probes.len()).filter(|&i| !probes[i].done && !probes[i].failed).collect();
-        for chunk in open.chunks(CHUNK) {
-            let mut jobs = vec![];
-            let mut of = vec![];
-            for &i in chunk {
-                let probe = &probes[i];
-                let cause = &candidates[probe.candidate];
-                let mut knobs = cause.starts[probe.start].clone();
-                let blend = match cause.linear.get(probe.which) {
-                    Some(&knob) => {
-                        knobs[knob] = probe.size;
-                        1.0
-                    }
-                    None => probe.size.abs().min(1.0),
-                };
-                match sharing.job(cause, &knobs, blend) {
-                    Some(job) => {
-                        jobs.push(job);
-                        of.push(i);
-                    }
-                    None => probes[i].failed = true,
-                }
-            }
-            for (i, y) in of.into_iter().zip(problem.run(&jobs, Span::Fit)) {
-                let probe = &mut probes[i];
-                let cause = &candidates[probe.candidate];
-                let Some(y) = y else {
-                    probe.size *= 0.1;
-                    continue;
-                };
-                let r = problem.residual(&y, Part::Fit);
-                let change: Vec<f64> = r0.iter().zip(&r).map(|(a, b)| a - b).collect();
-                let effect = rms(&change);
-                if !effect.is_finite() {
-                    probe.size *= 0.1;
-                    continue;
-                }
-                let limit = match cause.linear.get(probe.which) {
-                    Some(&knob) => {
-                        let (min, max) = cause.bounds(knob);
-                        if probe.size > 0.0 { max } else { min.abs() }
-                    }
-                    None => 1.0,
-                };
-                let last = attempt + 1 == ATTEMPTS || probe.size.abs() >= limit && effect < target;
-                if effect < 1e-12 * target || effect == 0.0 {
-                    if probe.size.abs() >= limit {
-                        probe.failed = true;
-                    }
-                    probe.size = (probe.size.abs() * 30.0).min(limit).copysign(probe.size);
-                    continue;
-                }
-                let hit = effect > share * target && effect < 3.0 * target;
-                if hit || last && effect < 30.0 * target {
-                    probe.done = true;
-                    let size = probe.size;
-                    let column = change.iter().map(|v| v / size).collect();
-                    let mut found = probe.clone();
-                    // what a secant should start from
-                    if tangent {
-                        found.size = size * target / effect;
-                    }
-                    hits.push((found, column));
-                    continue;
-                }
-                let factor = (target / effect).clamp(1e-3, 1e3);
-                probe.size = (probe.size.abs() * factor).min(limit).copysign(probe.size);
-            }
-        }
-    }
-    hits
 }
 
 /// What scores are made against.

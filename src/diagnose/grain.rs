@@ -1,0 +1,99 @@
+//! How fine a search integrates: the fewest steps that still tell causes apart.
+
+use std::sync::Arc;
+
+use super::problem::{Grain, Model, Part, Problem};
+use crate::statistics::deviation;
+use crate::system::Base;
+
+/// Error of rough steps, as a share of the outputs' spread, at which the direction of a
+/// small change is still right.
+const ROUGH: f64 = 0.02;
+
+impl Problem<'_> {
+    /// Picks the fewest steps whose error about this model is far below its residual, and
+    /// corrects coarse simulations by it from now on.
+    pub fn coarsen(&mut self, model: &Model) {
+        self.correction = None;
+        let Some(fine) = self.simulate(model, Grain::Fine) else { return };
+        let residual = self.distance(&fine, &self.y);
+        let spread: f64 = self
+            .y
+            .iter()
+            .zip(&self.scale)
+            .enumerate()
+            .map(|(o, (y, s))| (deviation(&self.counted(o, y, Part::All)) / s).powi(2))
+            .sum::<f64>()
+            .sqrt();
+        let allowed = (0.25 * residual).min(0.01 * spread);
+        let n = self.base.substeps;
+        let mut tried = vec![1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 50, 100, 200, 500, 1000];
+        tried.retain(|&count| count <= n / 2);
+        let mut rough = None;
+        for count in tried {
+            let Ok(mut base) = Base::new(
+                self.system.model.as_ref(),
+                &self.system.sampling,
+                self.base.sampling_time,
+            ) else {
+                return;
+            };
+            base.substeps = count;
+            self.take_steps(Arc::new(base), None);
+            let Some(coarse) = self.simulate(model, Grain::Coarse) else { continue };
+            let off = self.distance(&coarse, &fine);
+            if off < ROUGH * spread && rough.is_none() {
+                rough = Some(self.coarse.clone());
+            }
+            if off < allowed {
+                self.take_steps(self.coarse.clone(), rough);
+                self.correct(model, &fine);
+                return;
+            }
+        }
+        self.take_steps(self.base.clone(), rough);
+    }
+
+    /// Sets what coarse and rough steps are.
+    fn take_steps(&mut self, coarse: Arc<Base>, rough: Option<Arc<Base>>) {
+        self.rough = rough.unwrap_or(coarse.clone());
+        self.coarse = coarse;
+        if let Ok(mut plans) = self.plans.lock() {
+            plans.retain(|key, _| key.0 == Grain::Fine);
+        }
+    }
+
+    /// Corrects coarse simulations by their error about this model.
+    pub fn recorrect(&mut self, model: &Model) {
+        if self.coarse.substeps == self.base.substeps {
+            return;
+        }
+        self.correction = None;
+        if let Some(fine) = self.simulate(model, Grain::Fine) {
+            self.correct(model, &fine);
+        }
+    }
+
+    fn correct(&mut self, model: &Model, fine: &[Vec<f64>]) {
+        self.correction = None;
+        let Some(coarse) = self.simulate(model, Grain::Coarse) else { return };
+        let off = |(f, c): (&Vec<f64>, &Vec<f64>)| {
+            let difference = f.iter().zip(c).map(|(f, c)| f - c);
+            difference.map(|d| if d.is_finite() { d } else { 0.0 }).collect()
+        };
+        self.correction = Some(fine.iter().zip(coarse.iter()).map(off).collect());
+    }
+
+    /// Root mean square over all outputs of what counts, in units of the scales.
+    fn distance(&self, a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
+        let mut sum = 0.0;
+        let mut count = 0.0;
+        for o in 0..self.y.len() {
+            for k in self.samples(Part::All).filter(|&k| self.weight[o][k] > 0.0) {
+                sum += ((a[o][k] - b[o][k]) / self.scale[o]).powi(2);
+                count += 1.0;
+            }
+        }
+        (sum / f64::max(count, 1.0)).sqrt()
+    }
+}
