@@ -51,6 +51,13 @@ impl<'a> Report<'a> {
         std::fs::write(path, self.html())
     }
 
+    /// What the model lacks at a cause's place, against the coordinate, as an SVG file's text;
+    /// `None` where there is no such cause, or no curve of it.
+    pub fn picture(&self, cause: usize) -> Option<String> {
+        let curve = self.finding.series.curves.iter().find(|c| c.cause == cause)?;
+        Some(cause::figure(curve).file())
+    }
+
     /// The page.
     pub fn html(&self) -> String {
         let finding = self.finding;

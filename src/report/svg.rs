@@ -120,6 +120,13 @@ impl Figure {
         Some((x.widened(0.0)?, y.widened(0.05)?))
     }
 
+    /// The plot as a file of its own, with its colours in it.
+    pub fn file(&self) -> String {
+        let style = include_str!("style.css");
+        let own = format!("<style>{style}text{{font-family:system-ui,sans-serif}}</style>");
+        self.svg().replacen('>', &format!(">{own}"), 1)
+    }
+
     /// The plot as an `<svg>` element whose colours come from the page's style.
     pub fn svg(&self) -> String {
         let Some((xr, yr)) = self.ranges() else {
