@@ -12,7 +12,7 @@ use std::slice::Iter;
 
 use serde::Deserialize;
 use serde::de::value::{BorrowedStrDeserializer, MapAccessDeserializer};
-use serde::de::{DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{DeserializeSeed, Deserializer, Expected, MapAccess, SeqAccess, Visitor};
 use serde::forward_to_deserialize_any;
 
 use super::complaint::Complaint;
@@ -135,6 +135,19 @@ impl<'de> Deserializer<'de> for Reader<'_, 'de> {
         self.noted(value)
     }
 
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Complaint> {
+        // a model or an effect is named by the only key; which of two is complete is no matter
+        let named = (&visitor as &dyn Expected).to_string().starts_with("dyn ");
+        if let (true, Value::Table(entries)) = (named, &self.node.value)
+            && let [first, second, ..] = entries.as_slice()
+        {
+            let (first, found) = (first.key.clone(), second.key.clone());
+            let several = Complaint::Several { first, second: found };
+            return self.note(Err(several), &second.at, Some(&second.key));
+        }
+        self.deserialize_any(visitor)
+    }
+
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Complaint> {
         match self.node.value {
             Value::Null => visitor.visit_none(),
@@ -177,7 +190,7 @@ impl<'de> Deserializer<'de> for Reader<'_, 'de> {
 
     forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 f64 char str string bytes byte_buf unit
-        unit_struct seq tuple tuple_struct map struct identifier ignored_any
+        unit_struct seq tuple tuple_struct struct identifier ignored_any
     }
 }
 

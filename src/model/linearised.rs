@@ -1,6 +1,6 @@
 //! The linearisation of another model at a point.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use super::law::{Ask, Block, Call, LaneNumber, Law, Matrices};
@@ -56,7 +56,7 @@ impl Linearised {
             };
             return Some((filled(&at.x, sizes.x), filled(&at.u, sizes.u)));
         }
-        self.found.get_or_init(|| equilibrium(self.of.as_ref())).clone()
+        self.found.get_or_init(|| super::probe::equilibrium(self.of.as_ref())).clone()
     }
 
     /// The answer of the inner law at the point and its slope along (x - x*, u - u*, w).
@@ -96,31 +96,95 @@ impl Linearised {
     }
 
     /// The same for kinds of number that cannot be nested in duals: with the matrices at
-    /// the nominal parameters. A slope along a parameter does not exist here and becomes
-    /// not a number, never a silent zero.
+    /// each lane's parameters. Slopes along parameters are not in them.
     fn by_matrices<R: LaneNumber>(&self, ask: Ask, block: &Block<'_, R>, answer: &mut [R]) {
-        let Some(m) = Law::matrices(self, &self.of.signals().theta()) else {
-            answer.fill(R::constant(f64::NAN));
-            return;
-        };
         let n = block.sizes;
         let width = n.answer(ask);
+        let mut known: Vec<(Vec<f64>, Option<Matrices>)> = vec![];
         for pack in 0..block.packs {
+            let theta = &block.theta[pack * n.theta..][..n.theta];
+            let at = |lane: usize| theta.iter().map(|v| v.lane(lane)).collect::<Vec<f64>>();
+            // mostly all lanes share their parameters, with those of the pack before
+            let all: Vec<Vec<f64>> = (0..R::LANES).map(at).collect();
+            let lanes = if all.iter().all(|one| *one == all[0]) { 1 } else { R::LANES };
+            if known.len() != lanes || !known.iter().zip(&all).all(|((at, _), one)| at == one) {
+                let made = |one: &Vec<f64>| (one.clone(), Law::matrices(self, one));
+                known = all[..lanes].iter().map(made).collect();
+            }
+            let spread = |get: &dyn Fn(&Matrices) -> f64| {
+                let value = |lane: usize| known[lane].1.as_ref().map_or(f64::NAN, get);
+                let mut spread = R::constant(value(0));
+                (1..lanes).for_each(|lane| spread.set_lane(lane, value(lane)));
+                spread
+            };
             let (x, u) = (&block.x[pack * n.x..][..n.x], &block.u[pack * n.u..][..n.u]);
             let w = &block.w[pack * n.w..][..n.w];
-            let parts: [(&DMatrix<f64>, &[R]); 3] = match ask {
-                Ask::Derivative => [(&m.a, x), (&m.b, u), (&m.g, w)],
-                _ => [(&m.c, x), (&m.d, u), (&m.d, &[])],
+            type Part = fn(&Matrices) -> &DMatrix<f64>;
+            let parts: [(Part, &[R]); 3] = match ask {
+                Ask::Derivative => [(|m| &m.a, x), (|m| &m.b, u), (|m| &m.g, w)],
+                _ => [(|m| &m.c, x), (|m| &m.d, u), (|m| &m.d, &[])],
             };
-            let constant = if ask == Ask::Derivative { &m.f } else { &m.h };
             for i in 0..width {
-                let mut sum = R::constant(constant[i]);
+                let constant = |m: &Matrices| if ask == Ask::Derivative { m.f[i] } else { m.h[i] };
+                let mut sum = spread(&constant);
                 for (matrix, by) in parts {
                     for (j, &value) in by.iter().enumerate() {
-                        sum += value * matrix[(i, j)];
+                        sum += value * spread(&|m| matrix(m)[(i, j)]);
                     }
                 }
                 answer[pack * width + i] = sum;
+            }
+        }
+    }
+
+    /// Adds the slopes along parameters, from differences of fourth order.
+    fn along_parameters(&self, ask: Ask, block: &Block<'_, D>, answer: &mut [D]) {
+        let n = block.sizes;
+        let width = n.answer(ask);
+        let values = |list: &[D]| list.iter().map(|dual| dual.value).collect::<Vec<_>>();
+        let (theta, x, u, w) =
+            (values(block.theta), values(block.x), values(block.u), values(block.w));
+        let inner = Block {
+            sizes: n,
+            packs: block.packs,
+            theta: &theta,
+            derived: &[],
+            x: &x,
+            u: &u,
+            w: &w,
+            time: block.time.value,
+        };
+        for i in 0..n.theta {
+            let own = || block.theta.iter().skip(i).step_by(n.theta);
+            if own().all(|dual| dual.slope.iter().all(|slope| slope.0 == [0.0; 8])) {
+                continue;
+            }
+            let h = own().flat_map(|dual| dual.value.0).fold(0.0_f64, |m, v| m.max(v.abs()));
+            let h = if h > 0.0 { 1e-3 * h } else { 1e-3 };
+            let mut rate = vec![F64x8::constant(0.0); answer.len()];
+            for (step, weight) in [(h, 8.0), (-h, -8.0), (2.0 * h, -1.0), (-2.0 * h, 1.0)] {
+                let mut moved = theta.clone();
+                moved
+                    .iter_mut()
+                    .skip(i)
+                    .step_by(n.theta)
+                    .for_each(|value| *value += F64x8::constant(step));
+                let mut derived = vec![F64x8::constant(0.0); block.packs * n.derived];
+                let at = Block { theta: &moved, ..inner };
+                if n.derived > 0 {
+                    self.of.answer(Ask::Derived, F64x8::call(&at, &mut derived));
+                }
+                let mut out = rate.clone();
+                self.along(ask, &Block { derived: &derived, ..at }, &mut out);
+                for (rate, out) in rate.iter_mut().zip(out) {
+                    *rate += out * (weight / (12.0 * h));
+                }
+            }
+            for (at, (to, rate)) in answer.iter_mut().zip(rate).enumerate() {
+                let along = &block.theta[at / width * n.theta + i].slope;
+                for (to, &along) in to.slope.iter_mut().zip(along) {
+                    *to += rate * along;
+                }
             }
         }
     }
@@ -173,8 +237,20 @@ impl Law for Linearised {
             }
             Call::F64(block, out) => self.of.answer(ask, Call::F64(block, out)),
             Call::F32(block, out) => self.other(ask, block, out),
-            Call::Dual64(block, out) => self.other(ask, block, out),
-            Call::Dual32(block, out) => self.other(ask, block, out),
+            Call::Dual64(block, out) => {
+                self.other(ask, block, out);
+                if matches!(ask, Ask::Derivative | Ask::Output) {
+                    self.along_parameters(ask, block, out);
+                }
+            }
+            Call::Dual32(block, out) => {
+                self.other(ask, block, out);
+                let moves = |dual: &super::Dual32| dual.slope.iter().any(|s| s.0 != [0.0; 16]);
+                // single precision has no digits for differences: never a silent zero
+                if matches!(ask, Ask::Derivative | Ask::Output) && block.theta.iter().any(moves) {
+                    out.fill(super::Dual32::constant(f64::NAN));
+                }
+            }
         }
     }
 
@@ -189,46 +265,6 @@ impl Law for Linearised {
             super::probe::Point { theta: theta.to_vec(), x, u, w: vec![0.0; sizes.w], time: 0.0 };
         Some(super::probe::matrices(self.of.as_ref(), sizes, &at))
     }
-}
-
-/// The equilibrium nearest 0 for inputs 0: Newton's method on the derivative (or on the next
-/// state minus the state), each step the least-norm one, from 0 and, where the law has no
-/// slope there, from the model's initial state.
-fn equilibrium(law: &dyn StateSpaceModel) -> Option<(Vec<f64>, Vec<f64>)> {
-    let signals = law.signals();
-    let sizes = Sizes::of(&signals);
-    let discrete = !signals.time.is_continuous();
-    let start = |x: Vec<f64>| super::probe::Point {
-        theta: signals.theta(),
-        x,
-        u: vec![0.0; sizes.u],
-        w: vec![0.0; sizes.w],
-        time: 0.0,
-    };
-    for x in [vec![0.0; sizes.x], signals.initial()] {
-        let mut at = start(x);
-        for _ in 0..100 {
-            let mut rest = DVector::from_vec(super::probe::value(law, sizes, Ask::Derivative, &at));
-            let mut slope = super::probe::matrices(law, sizes, &at).a;
-            if discrete {
-                rest -= DVector::from_column_slice(&at.x);
-                slope -= DMatrix::identity(sizes.x, sizes.x);
-            }
-            if !rest.iter().all(|v| v.is_finite()) {
-                break;
-            }
-            let scale = 1.0 + at.x.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-            if rest.amax() <= 1e-12 * scale {
-                return Some((at.x, at.u));
-            }
-            let Ok(inverse) = slope.pseudo_inverse(1e-12) else { break };
-            let step = inverse * rest;
-            for (x, d) in at.x.iter_mut().zip(step.iter()) {
-                *x -= d;
-            }
-        }
-    }
-    None
 }
 
 crate::register!(StateSpaceModel for Linearised, "linearised", "the linearisation of another model at a point",

@@ -122,3 +122,43 @@ pub fn matrices(law: &dyn Law, sizes: Sizes, at: &Point) -> Matrices {
     let h = DVector::from_vec(value(law, sizes, Ask::Output, at)) - &c * &x - &d * &u;
     Matrices { a, b, g, f, c, d, h }
 }
+
+/// The equilibrium nearest 0 for inputs 0: Newton's method on the derivative (or on the next
+/// state minus the state), each step the least-norm one, from 0 and, where the law has no
+/// slope there, from the model's initial state.
+pub(crate) fn equilibrium(law: &dyn Law) -> Option<(Vec<f64>, Vec<f64>)> {
+    let signals = law.signals();
+    let sizes = Sizes::of(&signals);
+    let discrete = !signals.time.is_continuous();
+    let start = |x: Vec<f64>| Point {
+        theta: signals.theta(),
+        x,
+        u: vec![0.0; sizes.u],
+        w: vec![0.0; sizes.w],
+        time: 0.0,
+    };
+    for x in [vec![0.0; sizes.x], signals.initial()] {
+        let mut at = start(x);
+        for _ in 0..100 {
+            let mut rest = DVector::from_vec(value(law, sizes, Ask::Derivative, &at));
+            let mut slope = matrices(law, sizes, &at).a;
+            if discrete {
+                rest -= DVector::from_column_slice(&at.x);
+                slope -= DMatrix::identity(sizes.x, sizes.x);
+            }
+            if !rest.iter().all(|v| v.is_finite()) {
+                break;
+            }
+            let scale = 1.0 + at.x.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+            if rest.amax() <= 1e-12 * scale {
+                return Some((at.x, at.u));
+            }
+            let Ok(inverse) = slope.pseudo_inverse(1e-12) else { break };
+            let step = inverse * rest;
+            for (x, d) in at.x.iter_mut().zip(step.iter()) {
+                *x -= d;
+            }
+        }
+    }
+    None
+}

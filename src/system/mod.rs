@@ -4,6 +4,7 @@
 //! it sees) and one or more columns of S_xw (where it enters); effects in the path of an
 //! input or an output are passed one after the other, in the order of the model file.
 
+mod arithmetic;
 mod engine;
 mod error;
 mod exact;

@@ -195,7 +195,8 @@ impl Plan {
         let target = self.targets.find(&placed.into).ok_or_else(|| no_channel(&placed.into))?;
         let origin = self.targets.entries[target].1;
         let of_itself = placed.of.is_none() && !matches!(card.needs, Needs::Nothing | Needs::Time);
-        if placed.own_path() || of_itself {
+        // what remembers acts at the stages, also on its own path
+        if (placed.own_path() || of_itself) && card.states == 0 {
             match origin {
                 Origin::Input(i) => return Ok(Way::InputPath(i)),
                 Origin::Output(o) => return Ok(Way::OutputPath(o)),

@@ -1,0 +1,11 @@
+//! What every plug-in promises, tested for all that are registered.
+
+mod contract {
+    mod extended;
+    mod files;
+    mod neutral;
+    mod numbers;
+    mod refusals;
+    mod shelf;
+    mod slopes;
+}

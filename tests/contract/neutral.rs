@@ -1,0 +1,78 @@
+//! At its neutral value an effect changes nothing, to the last bit, wherever it stands.
+
+use lacuna::effect::{CandidateEffect, Mechanism};
+use lacuna::system::Placed;
+
+use super::shelf::{extend, models, neutral, outputs, places, record, same_bits, working};
+
+/// An effect with the value that changes nothing at this place: another value of a
+/// parameter is neutral at the present one.
+fn neutral_here(
+    system: &lacuna::system::System,
+    effect: &dyn CandidateEffect,
+    placed: &Placed,
+) -> Vec<Box<dyn CandidateEffect>> {
+    if effect.card().mechanism != Mechanism::Parameter {
+        return neutral(effect);
+    }
+    let parameters = system.signals().parameters;
+    let own = parameters.iter().find(|p| p.name == placed.into).unwrap();
+    vec![effect.with_values(&[own.value]).unwrap()]
+}
+
+#[test]
+fn every_effect_at_every_place_of_every_model() {
+    let effects = lacuna::register::effects();
+    let mut stood = vec![0; effects.len()];
+    let mut failures = vec![];
+    for (name, system) in models() {
+        for hold in [lacuna::system::Hold::Zero, lacuna::system::Hold::First] {
+            let mut system = system.clone();
+            system.sampling.hold = hold;
+            let record = record(&system, 60);
+            let plain = outputs(&system, &record);
+            for (number, (card, effect)) in effects.iter().enumerate() {
+                for placed in places(&system, working(effect.as_ref()).as_ref()) {
+                    for neutral in neutral_here(&system, effect.as_ref(), &placed) {
+                        let placed = Placed { effect: neutral, ..placed.clone() };
+                        let told = format!("{} into {} of {:?}", card.name, placed.into, placed.of);
+                        let Some(extended) = extend(&system, [placed]) else {
+                            panic!("{name}: {told} stands there, but not when neutral")
+                        };
+                        stood[number] += 1;
+                        if !same_bits(&outputs(&extended, &record), &plain) {
+                            failures.push(format!(
+                                "{name}, {hold:?}: {told}: {:?}",
+                                extended.effects[0].effect
+                            ));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    for ((card, _), stood) in effects.iter().zip(stood) {
+        assert!(stood >= 8, "{} was tried at only {stood} places", card.name);
+    }
+    assert!(failures.is_empty(), "{} changes:\n{}", failures.len(), failures.join("\n"));
+}
+
+#[test]
+fn no_effect_is_neutral_at_other_values() {
+    // the other half of the test above: values that should do something do, somewhere
+    for (card, effect) in lacuna::register::effects() {
+        if effect.card().mechanism == Mechanism::Data {
+            continue;
+        }
+        let effect = working(effect.as_ref());
+        let acts = models().into_iter().any(|(_, system)| {
+            let record = record(&system, 60);
+            let plain = outputs(&system, &record);
+            places(&system, effect.as_ref()).into_iter().any(|placed| {
+                let extended = extend(&system, [placed]).unwrap();
+                !same_bits(&outputs(&extended, &record), &plain)
+            })
+        });
+        assert!(acts, "{} does nothing anywhere", card.name);
+    }
+}
