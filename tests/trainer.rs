@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use lacuna::data::{Random, Record};
 use lacuna::encoder::{Baseline as Known, Encoder, LinearEncoder, Spread, Window};
 use lacuna::fault::Explain;
-use lacuna::lfr::{Baseline, Scales, Structure};
+use lacuna::lfr::{Baseline, Form, Scales, Structure};
 use lacuna::optimise::Adam;
 use lacuna::plugins::systems::Duffing;
 use lacuna::system::{Integrator, Method, Sampling, System};
@@ -52,6 +52,15 @@ fn measured(truth: &Duffing, samples: usize, seed: u64, noise: f64) -> Record {
 }
 
 fn start(model: &Duffing, record: &Record, free: &[usize]) -> Augmented {
+    with_structure(model, record, free, Structure::default())
+}
+
+fn with_structure(
+    model: &Duffing,
+    record: &Record,
+    free: &[usize],
+    structure: Structure,
+) -> Augmented {
     let system = System::new(model.clone(), sampling());
     let known = Known::new(&system, record).unwrap();
     let mut encoder: Box<dyn Encoder> = Box::new(LinearEncoder::new(Window::past(5)));
@@ -65,7 +74,7 @@ fn start(model: &Duffing, record: &Record, free: &[usize]) -> Augmented {
     };
     let mut baseline = Baseline::new(model.clone(), sampling(), T_S);
     baseline.free = free.to_vec();
-    let structure = Structure { hidden: vec![8], ..Structure::default() };
+    let structure = Structure { hidden: vec![8], ..structure };
     Augmented::new(structure.build(baseline, &scales, 2).unwrap(), encoder).unwrap()
 }
 
@@ -238,7 +247,9 @@ fn a_wrong_parameter_is_found_and_the_penalty_holds_it() {
     let training = vec![measured(&truth, 900, 1, 1e-3)];
     let validation = vec![measured(&truth, 500, 3, 1e-3)];
     // position of `damping` among the parameters
-    let model = start(&duffing(3.0, 30.0), &training[0], &[1]);
+    // the learned part is where it cannot take the damping's place: at the output
+    let structure = Structure { form: Form::OutputBlock, ..Structure::default() };
+    let model = with_structure(&duffing(3.0, 30.0), &training[0], &[1], structure);
     let damping = |penalty: f64| {
         let trainer = Trainer { penalty, ..trainer(40) };
         let fit = trainer.fit(&model, &training, &validation, &mut ()).unwrap();

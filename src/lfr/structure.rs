@@ -140,7 +140,10 @@ impl Structure {
                 let own = |result: Vec<Port<Source>>| if behind { result } else { vec![] };
                 let mut moved = if self.state_equation { plan.next_states() } else { vec![] };
                 moved.extend(plan.next_augmented());
-                plan.learn(&[seen.clone(), own(plan.f_base())].concat(), &moved, self, seed)?;
+                if !(moved.is_empty() && self.output_equation) {
+                    let seen = [seen.clone(), own(plan.f_base())].concat();
+                    plan.learn(&seen, &moved, self, seed)?;
+                }
                 if self.output_equation {
                     let moved = plan.measured();
                     plan.learn(&[seen, own(plan.h_base())].concat(), &moved, self, seed ^ OTHER)?;

@@ -192,6 +192,7 @@ fn oracle<'a>(model: &Augmented, u: &'a [f64], y: &'a [f64]) -> oracle::Oracle<'
 fn main() {
     let quick = std::env::args().any(|argument| argument == "--quick");
     let runs = if quick { 3 } else { 9 };
+    let only = std::env::args().skip_while(|argument| argument != "--only").nth(1);
     let record = record::make(2, 1).record;
     let (u, y) = (&record.inputs[0].values, &record.outputs[0].values);
     let peaks = [peak::f64(), peak::f32()];
@@ -224,6 +225,10 @@ fn main() {
         for (arithmetic, name, peak) in
             [(Arithmetic::Double, "f64", peaks[0]), (Arithmetic::Single, "f32", peaks[1])]
         {
+            let case = format!("{kind}_{name}");
+            if only.as_ref().is_some_and(|only| *only != case) {
+                continue;
+            }
             let mut step = Step::new(&model, &record, shooting(1, arithmetic));
             let (ms, wall) = least(runs, || {
                 black_box(step.run(SECTIONS));
@@ -232,7 +237,7 @@ fn main() {
             println!(
                 "{}",
                 json!({
-                    "case": format!("{kind}_{name}"),
+                    "case": case,
                     "ms": ms,
                     "wall_ms": wall,
                     "oracle_ms": oracle_ms,
@@ -242,6 +247,9 @@ fn main() {
                 })
             );
         }
+    }
+    if only.is_some() {
+        return;
     }
     for arithmetic in [Arithmetic::Double, Arithmetic::Single] {
         let time = |threads| {

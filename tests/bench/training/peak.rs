@@ -32,8 +32,9 @@ macro_rules! peak {
             use std::arch::x86_64::*;
             #[target_feature(enable = "avx512f")]
             fn wide() -> $t {
-                let (a, b) = ($wide_set(0.999), $wide_set(1e-3));
-                let mut sums = [$wide_set(1.0); SUMS];
+                use std::hint::black_box;
+                let (a, b) = ($wide_set(black_box(0.999)), $wide_set(black_box(1e-3)));
+                let mut sums = [0.0; SUMS].map(|s| $wide_set(black_box(s)));
                 for _ in 0..ROUNDS {
                     for sum in &mut sums {
                         *sum = $wide_fma(*sum, a, b);
@@ -44,8 +45,9 @@ macro_rules! peak {
             }
             #[target_feature(enable = "avx2,fma")]
             fn narrow() -> $t {
-                let (a, b) = ($narrow_set(0.999), $narrow_set(1e-3));
-                let mut sums = [$narrow_set(1.0); SUMS];
+                use std::hint::black_box;
+                let (a, b) = ($narrow_set(black_box(0.999)), $narrow_set(black_box(1e-3)));
+                let mut sums = [0.0; SUMS].map(|s| $narrow_set(black_box(s)));
                 for _ in 0..ROUNDS {
                     for sum in &mut sums {
                         *sum = $narrow_fma(*sum, a, b);
