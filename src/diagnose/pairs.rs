@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::candidate::Candidate;
 use super::problem::{Model, Part};
+use super::screen::Screen;
 use super::search::Search;
 use super::stage::{Trial, stage};
 
@@ -11,6 +12,8 @@ use super::stage::{Trial, stage};
 const STAYED: f64 = 0.25;
 /// First causes that are expanded when one is not enough.
 const BEAM: usize = 5;
+/// Candidates of each screen that may be the second of a pair.
+const LEADING: usize = 60;
 
 impl Search<'_, '_> {
     /// Expands other first causes too; the best pair overall, if it beats one cause alone.
@@ -73,4 +76,17 @@ impl Search<'_, '_> {
 pub(super) fn stayed(alone: &Model, joined: &Model) -> bool {
     let (Some(a), Some(b)) = (alone.added.first(), joined.added.first()) else { return true };
     a.cause.linear.iter().all(|&i| (a.knobs[i] - b.knobs[i]).abs() < STAYED * a.knobs[i].abs())
+}
+
+/// The candidates that lead one of the screens: what is far behind alone and beside the first
+/// cause is not the second one of another pair.
+pub(super) fn shortlist(
+    candidates: &[Arc<Candidate>],
+    screens: [&Option<Screen>; 2],
+) -> Vec<Arc<Candidate>> {
+    let leads = |cause: &Candidate| {
+        let mut leading = screens.into_iter().flatten().flat_map(|s| s.scored.iter().take(LEADING));
+        leading.any(|s| s.cause.same_cause(cause))
+    };
+    candidates.iter().filter(|cause| leads(cause)).cloned().collect()
 }

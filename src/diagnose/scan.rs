@@ -4,20 +4,22 @@ use super::candidate::Candidate;
 use super::probes::with_candidate;
 use super::problem::{Grain, Job, Model, Part, Problem, Span};
 use super::screen::{Scored, Screen};
-use crate::statistics::dot;
+use crate::statistics::{dot, project};
 
 /// From one size to the next.
 const RUNG: f64 = 2.5;
 /// Candidates whose sizes are looked at between the rungs too.
 const LEADING: usize = 15;
 
-/// Sums of squares of many jobs on the part that is fitted.
-pub(super) fn squares(problem: &Problem<'_>, jobs: &[Job]) -> Vec<f64> {
+/// Sums of squares of many jobs on the part that is fitted, less what the nuisance would make
+/// up for to first order.
+pub(super) fn squares(problem: &Problem<'_>, jobs: &[Job], basis: &[Vec<f64>]) -> Vec<f64> {
     let mut sums = vec![];
     for chunk in jobs.chunks(512) {
         for y in problem.run(chunk, Span::Fit) {
             let sum = y.map_or(f64::INFINITY, |y| {
-                let r = problem.residual(&y, Part::Fit);
+                let mut r = problem.residual(&y, Part::Fit);
+                project(basis, &mut r);
                 dot(&r, &r)
             });
             sums.push(if sum.is_finite() { sum } else { f64::INFINITY });
@@ -52,10 +54,10 @@ pub(super) fn scan_all(
         }
     }
     let Some(now) = problem.job(model, Grain::Coarse) else { return vec![] };
-    let before = squares(problem, &[now])[0];
+    let before = squares(problem, &[now], &screened.basis)[0];
     let mut best: Vec<(usize, f64, f64)> = vec![];
     let mut keep = |of: Vec<(usize, f64)>, jobs: Vec<Job>| {
-        for ((index, size), sum) in of.into_iter().zip(squares(problem, &jobs)) {
+        for ((index, size), sum) in of.into_iter().zip(squares(problem, &jobs, &screened.basis)) {
             match best.iter_mut().find(|(i, ..)| *i == index) {
                 _ if sum >= before => {}
                 Some(entry) if entry.2 <= sum => {}

@@ -42,6 +42,8 @@ pub(crate) struct Screen {
     pub far: f64,
     /// Probe columns tried.
     pub columns: usize,
+    /// What the nuisance makes up for to first order, orthonormal.
+    pub basis: Vec<Vec<f64>>,
 }
 
 /// Screens all candidates on top of a model.
@@ -155,7 +157,13 @@ pub(crate) fn screen(
     }
     let mut scored: Vec<Scored> = best.into_iter().flatten().collect();
     scored.sort_by(|a, b| b.explained.total_cmp(&a.explained));
-    Some(Screen { scored, total: dot(&left, &left), far: residual / spread.max(1e-300), columns })
+    Some(Screen {
+        scored,
+        total: dot(&left, &left),
+        far: residual / spread.max(1e-300),
+        columns,
+        basis,
+    })
 }
 
 fn keep(best: &mut Option<Scored>, scored: Scored) {

@@ -7,7 +7,7 @@ use super::dependence::dependence;
 use super::library::{Allowed, library};
 use super::nominal::Nominal;
 use super::nuisance::{Nuisance, Refit, refit};
-use super::pairs::stayed;
+use super::pairs::{shortlist, stayed};
 use super::problem::{Grain, Model, Part, Problem};
 use super::screen::Screen;
 use super::sets::headed_by;
@@ -191,8 +191,9 @@ impl<'a, 'b> Search<'a, 'b> {
                     && !(self.is_settled(&before, &trials[0]) && stayed(&model, &trials[0].model))
             {
                 self.tell(at + 0.6 * step, "looking at pairs");
+                let leading = shortlist(&candidates, [&first, &last]);
                 if let Some((better_first, pool)) =
-                    self.pairs(&model, &before, &previous, &trials, &candidates)
+                    self.pairs(&model, &before, &previous, &trials, &leading)
                 {
                     slots = vec![Slot {
                         set: vec![(better_first, 1.0)],

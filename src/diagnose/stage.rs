@@ -126,7 +126,7 @@ pub(crate) fn stage(
         .cloned()
         .collect();
     chosen.extend(twins.into_iter().map(|twin| (twin, None)));
-    let trials = judge(problem, nuisance, model, &chosen, bar);
+    let trials = judge(problem, nuisance, model, &chosen, (bar, &screened.basis));
     screened.scored.truncate(200);
     Some(Stage { trials, screen: screened })
 }
@@ -137,7 +137,7 @@ fn judge(
     nuisance: &Nuisance,
     model: &Model,
     chosen: &[(Scored, Option<f64>)],
-    bar: f64,
+    (bar, basis): (f64, &[Vec<f64>]),
 ) -> Vec<Trial> {
     let mut jobs = vec![];
     let mut of = vec![];
@@ -152,7 +152,7 @@ fn judge(
         }
     }
     let mut tried: Vec<Vec<(f64, Vec<f64>)>> = vec![vec![]; chosen.len()];
-    for ((index, knobs), sum) in of.into_iter().zip(squares(problem, &jobs)) {
+    for ((index, knobs), sum) in of.into_iter().zip(squares(problem, &jobs, basis)) {
         if sum.is_finite() {
             tried[index].push((sum, knobs));
         }
