@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use super::unit::UnitRule;
 use crate::model::Quantity;
 
 /// What a knob does to the shape of the effect.
@@ -14,29 +15,6 @@ pub enum Role {
     Shape,
     /// It picks one of a few variants and is never refined (a side).
     Choice,
-}
-
-/// The unit of a knob, from the units of where the effect acts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum UnitRule {
-    /// No unit.
-    None,
-    /// Unit of the channel.
-    Channel,
-    /// Unit of the coordinate.
-    Coordinate,
-    /// Unit of the channel over a power of the coordinate's.
-    ChannelPerCoordinate(u8),
-    /// One over the unit of the coordinate.
-    PerCoordinate,
-    /// Unit of the channel per second.
-    ChannelPerSecond,
-    /// Unit of the channel over the coordinate's, times s^2 (a mass).
-    Inertia,
-    /// s.
-    Second,
-    /// rad/s.
-    RadianPerSecond,
 }
 
 /// One parameter of an effect.
@@ -269,60 +247,6 @@ impl EffectCard {
     }
 }
 
-/// Where the search for an effect starts: values for every knob, coefficients at 0.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Search {
-    /// Grid of starting values of the knobs. Infinite shape values stay as they are.
-    pub starts: Vec<Vec<f64>>,
-    /// Smallest values worth trying.
-    pub min: Vec<f64>,
-    /// Largest values worth trying.
-    pub max: Vec<f64>,
-    /// Whether a finer grid of thresholds should be tried before refining.
-    pub thresholds: bool,
-}
-
-impl Search {
-    /// One start at the card's values, coefficients at zero, inside the knobs' ranges.
-    pub fn plain(card: &EffectCard) -> Self {
-        let start = card
-            .knobs
-            .iter()
-            .map(|knob| if knob.role == Role::Coefficient { 0.0 } else { knob.value })
-            .collect();
-        Self {
-            starts: vec![start],
-            min: card.knobs.iter().map(|knob| knob.min).collect(),
-            max: card.knobs.iter().map(|knob| knob.max).collect(),
-            thresholds: false,
-        }
-    }
-
-    /// Replaces the starts by a grid over one knob and narrows its range.
-    ///
-    /// # Panics
-    ///
-    /// If the card has no such knob.
-    #[must_use]
-    #[track_caller]
-    pub fn over(mut self, card: &EffectCard, knob: &str, grid: &[f64], range: (f64, f64)) -> Self {
-        let index = card.knobs.iter().position(|k| k.name == knob);
-        let Some(index) = index else { panic!("no knob called {knob}") };
-        let first = self.starts.swap_remove(0);
-        self.starts = grid
-            .iter()
-            .map(|&value| {
-                let mut start = first.clone();
-                start[index] = value;
-                start
-            })
-            .collect();
-        self.min[index] = self.min[index].max(range.0);
-        self.max[index] = self.max[index].min(range.1);
-        self
-    }
-}
-
 /// What the named coordinate of a cause is, for the sentence.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Named {
@@ -347,37 +271,4 @@ impl fmt::Display for Role {
             Self::Choice => "choice",
         })
     }
-}
-
-impl UnitRule {
-    /// The unit as text.
-    pub fn text(self, channel: &str, coordinate: &str) -> String {
-        let over = |top: &str, bottom: &str| match (top.is_empty(), bottom.is_empty()) {
-            (_, true) => top.to_string(),
-            (true, false) => format!("1/{}", grouped(bottom)),
-            (false, false) => format!("{top}/{}", grouped(bottom)),
-        };
-        match self {
-            Self::None => String::new(),
-            Self::Channel => channel.to_string(),
-            Self::Coordinate => coordinate.to_string(),
-            Self::ChannelPerCoordinate(1) => over(channel, coordinate),
-            Self::ChannelPerCoordinate(_) if coordinate.is_empty() => channel.to_string(),
-            Self::ChannelPerCoordinate(power) => {
-                over(channel, &format!("{}^{power}", grouped(coordinate)))
-            }
-            Self::PerCoordinate => over("", coordinate),
-            Self::ChannelPerSecond => over(channel, "s"),
-            Self::Inertia if channel.is_empty() && coordinate.is_empty() => "s^2".into(),
-            Self::Inertia if channel.is_empty() => format!("s^2/{}", grouped(coordinate)),
-            Self::Inertia => over(&format!("{channel} s^2"), coordinate),
-            Self::Second => "s".into(),
-            Self::RadianPerSecond => "rad/s".into(),
-        }
-    }
-}
-
-/// A unit that may follow a slash or carry a power.
-fn grouped(unit: &str) -> String {
-    if unit.contains([' ', '/', '*', '^']) { format!("({unit})") } else { unit.to_string() }
 }

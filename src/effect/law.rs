@@ -5,7 +5,8 @@ use std::fmt::Debug;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::card::{EffectCard, Named, Search};
+use super::card::{EffectCard, Named};
+use super::search::Search;
 use super::view::View;
 use crate::model::{Dual32, Dual64};
 use crate::per_lanes;

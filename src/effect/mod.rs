@@ -7,11 +7,13 @@
 mod card;
 mod curve;
 mod law;
+mod search;
+mod unit;
 mod view;
 
-pub use card::{
-    EffectCard, Knob, Mechanism, Named, Needs, Places, Role, Search, SignRule, UnitRule,
-};
+pub use card::{EffectCard, Knob, Mechanism, Named, Needs, Places, Role, SignRule};
 pub use curve::curve;
 pub use law::{CandidateEffect, Effect, EffectBlock, EffectCall, Felt, Shape};
+pub use search::Search;
+pub use unit::UnitRule;
 pub use view::View;

@@ -1,28 +1,19 @@
 //! The fit itself: simulation error, several starts, bounds, intervals.
 
-use rand::{RngExt, SeedableRng};
-use rand_chacha::ChaCha8Rng;
+mod starts;
+mod told;
+
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::rank::{Combination, unseen};
+use super::rank::Combination;
 use crate::data::Record;
 use crate::effect::Role;
 use crate::evaluate::{EvaluateError, Init, Run};
-use crate::model::with_parameters;
 use crate::optimise::{Levenberg, Settings, Unknown};
-use crate::statistics::{covariance, deviation};
-use crate::system::{Lane, Placed, System};
+use crate::statistics::deviation;
+use crate::system::{Lane, System};
 use crate::watch::Watch;
-
-/// Random starts beside the values given.
-const STARTS: usize = 63;
-/// Of those, how many are followed.
-const FOLLOWED: usize = 5;
-/// Samples of each record that starts are judged on.
-const FIRST: usize = 4000;
-/// Spread of the random starts, as the standard deviation of the logarithm.
-const WIDE: f64 = 0.7;
 
 /// One estimated parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -258,149 +249,5 @@ impl<'a> Fit<'a> {
                 }
             }
         }
-    }
-
-    /// The best of the given values and of many random ones, each followed for a while, and
-    /// the mean square at the values given.
-    fn best_start(&self, seed: u64) -> Result<(Vec<f64>, f64), EvaluateError> {
-        let given: Vec<f64> = self.unknowns.iter().map(|u| u.start).collect();
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut points = vec![given.clone()];
-        for _ in 0..STARTS {
-            let point = self.keys.iter().zip(&self.unknowns).map(|(key, u)| {
-                // a normal deviate, by the sum of twelve uniform ones
-                let normal: f64 = (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
-                match key {
-                    Key::Start(..) => u.start,
-                    _ => (u.start * (WIDE * normal).exp()).clamp(u.bounds.0, u.bounds.1),
-                }
-            });
-            points.push(point.collect());
-        }
-        let mean = |r: &Vec<f64>| r.iter().map(|v| v * v).sum::<f64>() / r.len().max(1) as f64;
-        let answers = self.residuals(&points, FIRST);
-        let mut order: Vec<(usize, f64)> = answers
-            .iter()
-            .enumerate()
-            .filter_map(|(i, r)| r.as_ref().map(|r| (i, mean(r))))
-            .filter(|(_, m)| m.is_finite())
-            .collect();
-        order.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let mut follow: Vec<Vec<f64>> =
-            order.iter().take(FOLLOWED).map(|&(i, _)| points[i].clone()).collect();
-        if answers[0].is_some() && !order.iter().take(FOLLOWED).any(|&(i, _)| i == 0) {
-            follow.push(given.clone());
-        }
-        let settings = Settings { iterations: 15, tolerance: 1e-4, difference: 1e-4 };
-        let mut followed = self.run(&follow, settings, FIRST);
-        followed.sort_by(|a, b| a.squares.total_cmp(&b.squares));
-        let best = followed.into_iter().find(|f| f.squares.is_finite()).map(|f| f.point);
-        let best = best.or_else(|| self.watch.stopped().then(|| given.clone()));
-        let best = best.ok_or_else(|| EvaluateError::Diverges {
-            record: self.source.clone(),
-            sample: 0,
-            time: 0.0,
-        })?;
-        let before = self.residuals(&[given], usize::MAX).swap_remove(0);
-        Ok((best, before.map_or(f64::INFINITY, |r| mean(&r))))
-    }
-
-    fn told(&self, done: &Levenberg, before: f64) -> Result<Estimate, EvaluateError> {
-        let count = done.residuals.len().max(1) as f64;
-        let scaled: Vec<Vec<f64>> = done
-            .columns
-            .iter()
-            .zip(&self.unknowns)
-            .map(|(column, u)| column.iter().map(|v| v * u.scale).collect())
-            .collect();
-        let variance = done.squares / count;
-        let ridge: Vec<f64> = self
-            .unknowns
-            .iter()
-            .map(|u| u.prior.map_or(0.0, |(_, d)| variance * (u.scale / d).powi(2)))
-            .collect();
-        let covariance = covariance(&scaled, &done.residuals, 1, &ridge);
-        let mut parameters = vec![];
-        for (i, (name, unit)) in self.names.iter().enumerate() {
-            let u = &self.unknowns[i];
-            let value = done.point[i];
-            let at_bound = value <= u.bounds.0 || value >= u.bounds.1;
-            let error = covariance.as_ref().map(|c| c[(i, i)].sqrt() * u.scale);
-            let error =
-                error.filter(|e| e.is_finite() && *e < 1e3 * value.abs().max(u.scale) && !at_bound);
-            parameters.push(Estimated {
-                name: name.clone(),
-                from: u.start,
-                value,
-                std_error: error,
-                interval95: error.map(|e| [value - 1.96 * e, value + 1.96 * e]),
-                unit: unit.clone(),
-                at_bound,
-            });
-        }
-        let names: Vec<String> = self.names.iter().map(|(name, _)| name.clone()).collect();
-        // initial states may explain part of a change: what is left counts
-        let mut basis = vec![];
-        for column in scaled.iter().skip(self.names.len()) {
-            crate::statistics::add_to_basis(&mut basis, column.clone());
-        }
-        let relative: Vec<Vec<f64>> = done
-            .columns
-            .iter()
-            .zip(&done.point)
-            .take(self.names.len())
-            .map(|(column, &value)| {
-                let factor = if value == 0.0 { 1.0 } else { value.abs() };
-                let mut column: Vec<f64> = column.iter().map(|v| v * factor).collect();
-                crate::statistics::project(&basis, &mut column);
-                column
-            })
-            .collect();
-        let undetermined =
-            if done.columns.len() == self.keys.len() { unseen(&names, &relative) } else { vec![] };
-        Ok(Estimate {
-            system: self.with_values(&done.point)?,
-            parameters,
-            undetermined,
-            nrmse: (before.sqrt(), variance.sqrt()),
-            iterations: done.iterations,
-            interrupted: self.watch.stopped(),
-        })
-    }
-
-    /// The system with the values at a point.
-    fn with_values(&self, point: &[f64]) -> Result<System, EvaluateError> {
-        let first = &self.runs[0];
-        let mut changes = vec![];
-        let mut knobs = first.plan.knob_values();
-        for (&key, &value) in self.keys.iter().zip(point) {
-            match key {
-                Key::Theta(p) => {
-                    changes.push((first.plan.signals.parameters[p].name.clone(), value));
-                }
-                Key::Knob(k) => knobs[k] = value,
-                Key::Start(..) => {}
-            }
-        }
-        let written =
-            |error: serde_json::Error| EvaluateError::NotWritten { reason: error.to_string() };
-        let mut system = self.system.clone();
-        if !changes.is_empty() {
-            system.model =
-                with_parameters(self.system.model.as_ref(), &changes).map_err(written)?;
-        }
-        let mut slots = first.plan.slots.iter();
-        let mut effects: Vec<Placed> = vec![];
-        for placed in &self.system.effects {
-            let mut placed = placed.clone();
-            let is_data = placed.effect.card().mechanism == crate::effect::Mechanism::Data;
-            if let Some(slot) = (!is_data).then(|| slots.next()).flatten() {
-                let own = &knobs[slot.knobs..][..slot.card.knobs.len()];
-                placed.effect = placed.effect.with_values(own).map_err(written)?;
-            }
-            effects.push(placed);
-        }
-        system.effects = effects;
-        Ok(system)
     }
 }

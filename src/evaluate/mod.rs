@@ -2,9 +2,10 @@
 
 mod error;
 mod metric;
+mod run;
 mod simulate;
 
 pub use error::EvaluateError;
 pub use metric::Metrics;
+pub(crate) use run::{Run, drive, measured};
 pub use simulate::{Init, Simulation};
-pub(crate) use simulate::{Run, drive, measured};

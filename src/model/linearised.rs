@@ -3,7 +3,8 @@
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::law::{Ask, Block, Call, LaneNumber, Law, Matrices};
+use super::lane_number::LaneNumber;
+use super::law::{Ask, Block, Call, Law, Matrices};
 use super::{Dual64, Fault, Signals, Sizes, StateSpaceModel};
 use crate::real::{F64x8, Real};
 

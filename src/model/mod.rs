@@ -6,6 +6,7 @@
 //! [`StateSpaceModel`] is the registered trait: empty, with `Law` below it.
 
 pub mod equations;
+mod lane_number;
 mod law;
 pub mod linearised;
 pub mod lti;
@@ -13,10 +14,8 @@ mod physics;
 pub(crate) mod probe;
 mod signals;
 
-pub use law::{
-    Ask, Block, Call, DIRECTIONS, Dual32, Dual64, Fault, LaneNumber, Law, Matrices, Pull, PullCall,
-    Sizes,
-};
+pub use lane_number::{DIRECTIONS, Dual32, Dual64, LaneNumber};
+pub use law::{Ask, Block, Call, Fault, Law, Matrices, Pull, PullCall, Sizes};
 pub use physics::{At, Physics};
 pub use signals::{Parameter, Quantity, Signal, Signals, State, TimeKind};
 

@@ -2,7 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::law::{Ask, Block, Dual64, LaneNumber, Law, Matrices, Sizes};
+use super::lane_number::{Dual64, LaneNumber};
+use super::law::{Ask, Block, Law, Matrices, Sizes};
 use crate::real::{F64x8, Real};
 
 type D = Dual64;

@@ -28,6 +28,7 @@ mod observe;
 mod schedule;
 pub mod shelf;
 mod stop;
+mod unknown;
 
 pub use adam::{Adam, AdamState, AdamStep};
 pub use bounds::{Bounds, Transformed};

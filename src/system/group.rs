@@ -7,7 +7,8 @@ use super::inputs::InputPaths;
 use super::lane::Lane;
 use super::outputs::OutputPaths;
 use super::plan::{Plan, Way};
-use super::wiring::{EffectNumber, Found, Sight, Wiring, find};
+use super::sight::{Found, Sight, find};
+use super::wiring::{EffectNumber, Wiring};
 
 /// What effects may look at in one instant: this group's share of everything.
 pub(crate) struct Instant<'b, R> {

@@ -17,6 +17,7 @@ mod placed;
 mod plan;
 mod rates;
 mod sampling;
+mod sight;
 mod tables;
 mod wiring;
 

@@ -7,6 +7,7 @@ use crate::real::{F32x16, F64x8};
 use super::lane::{Lane, Route};
 use super::path::PlayState;
 use super::plan::{Plan, Way};
+use super::sight::{Found, Sight, find};
 use super::tables::Origin;
 
 /// A number that effects can be called with.
@@ -33,54 +34,6 @@ macro_rules! effect_number {
 }
 
 effect_number!(F64x8 => F64, F32x16 => F32, Dual64 => Dual64, Dual32 => Dual32);
-
-/// Where an entry of the source table is found.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Found {
-    State(usize),
-    Own(usize),
-    Input(usize),
-    Output(usize),
-    Time,
-}
-
-/// Everything that effects look at in one instant: this group's share.
-pub(crate) struct Sight<'b, R> {
-    pub x: &'b [R],
-    pub u: &'b [R],
-    pub coordinates: &'b [R],
-    pub outputs: &'b [R],
-    pub time: R,
-    /// Values per pack of the four above.
-    pub sizes: [usize; 4],
-}
-
-impl<R: LaneNumber> Sight<'_, R> {
-    /// The value at a place, for one pack.
-    #[inline(always)]
-    pub fn at(&self, pack: usize, found: Found) -> &R {
-        let [nx, nu, nz, ny] = self.sizes;
-        match found {
-            Found::State(i) => &self.x[pack * nx + i],
-            Found::Input(i) => &self.u[pack * nu + i],
-            Found::Own(i) => &self.coordinates[pack * nz + i],
-            Found::Output(i) => &self.outputs[pack * ny + i],
-            Found::Time => &self.time,
-        }
-    }
-}
-
-/// Where an entry of the source table is found in a plan: own coordinates that are states
-/// are read where they are.
-pub(crate) fn find(plan: &Plan, entry: usize) -> Found {
-    match plan.sources.entries[entry].1 {
-        Origin::Own(i) => plan.own_state[i].map_or(Found::Own(i), Found::State),
-        Origin::Input(i) => Found::Input(i),
-        Origin::Output(i) => Found::Output(i),
-        Origin::Time => Found::Time,
-        Origin::State(i) => Found::State(i),
-    }
-}
 
 /// One lane's own wiring, looked up.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,11 +2,12 @@
 
 use std::collections::HashSet;
 
+use super::error::EquationsError;
 use super::expression::Operator;
 use super::graph::{Graph, Id, Term};
 use super::names::Names;
 use super::parse::parse;
-use super::problem::{EquationsError, Problem, Role};
+use super::problem::{Problem, Role};
 use super::program::Program;
 use super::signals::{bounds, signals};
 use super::table::{State, Table};

@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
+use super::error::Located;
 use super::expression::{Expression, Node, Operator};
 use super::function::{Function, Pair};
-use super::problem::Located;
 
 /// Position of a term in a [`Graph`].
 pub type Id = usize;

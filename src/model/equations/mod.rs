@@ -9,6 +9,7 @@
 //! ([`program`]) that a small machine runs for 64 lanes at a time ([`run`]).
 
 mod build;
+mod error;
 mod expression;
 mod function;
 mod graph;
@@ -29,10 +30,11 @@ use serde::{Deserialize, Serialize};
 use super::{Ask, Block, Call, Fault, Law, Signals};
 use build::{Compiled, compile};
 
+pub use error::{EquationsError, Located};
 pub use expression::{Expression, Node, Operator};
 pub use function::{Function, Pair};
 pub use parse::{DEPTH, parse};
-pub use problem::{EquationsError, Expected, Located, Problem, Role};
+pub use problem::{Expected, Problem, Role};
 pub use table::{Channel, Coordinate, Entry, Input, Output, Parameter, State, Table, Variable};
 pub use token::Token;
 

@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 
+use super::error::{EquationsError, Located};
 use super::function;
 use super::graph::{Graph, Id, Term};
-use super::problem::{EquationsError, Located, Problem, Role};
+use super::problem::{Problem, Role};
 use super::table::Table;
 use super::token::is_name;
 

@@ -8,9 +8,10 @@
 //! atom    = number | name | function "(" sum { "," sum } ")" | "(" sum ")"
 //! ```
 
+use super::error::Located;
 use super::expression::{Expression, Node, Operator};
 use super::function::{Function, Pair};
-use super::problem::{Expected, Located, Problem};
+use super::problem::{Expected, Problem};
 use super::token::{Token, tokens};
 
 /// How many parentheses, powers and signs may stand within each other.

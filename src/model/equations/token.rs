@@ -2,7 +2,8 @@
 
 use std::fmt;
 
-use super::problem::{Located, Problem};
+use super::error::Located;
+use super::problem::Problem;
 
 /// One word.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,0 +1,57 @@
+//! Where the search for an effect starts.
+
+use super::card::{EffectCard, Role};
+
+/// Where the search for an effect starts: values for every knob, coefficients at 0.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Search {
+    /// Grid of starting values of the knobs. Infinite shape values stay as they are.
+    pub starts: Vec<Vec<f64>>,
+    /// Smallest values worth trying.
+    pub min: Vec<f64>,
+    /// Largest values worth trying.
+    pub max: Vec<f64>,
+    /// Whether a finer grid of thresholds should be tried before refining.
+    pub thresholds: bool,
+}
+
+impl Search {
+    /// One start at the card's values, coefficients at zero, inside the knobs' ranges.
+    pub fn plain(card: &EffectCard) -> Self {
+        let start = card
+            .knobs
+            .iter()
+            .map(|knob| if knob.role == Role::Coefficient { 0.0 } else { knob.value })
+            .collect();
+        Self {
+            starts: vec![start],
+            min: card.knobs.iter().map(|knob| knob.min).collect(),
+            max: card.knobs.iter().map(|knob| knob.max).collect(),
+            thresholds: false,
+        }
+    }
+
+    /// Replaces the starts by a grid over one knob and narrows its range.
+    ///
+    /// # Panics
+    ///
+    /// If the card has no such knob.
+    #[must_use]
+    #[track_caller]
+    pub fn over(mut self, card: &EffectCard, knob: &str, grid: &[f64], range: (f64, f64)) -> Self {
+        let index = card.knobs.iter().position(|k| k.name == knob);
+        let Some(index) = index else { panic!("no knob called {knob}") };
+        let first = self.starts.swap_remove(0);
+        self.starts = grid
+            .iter()
+            .map(|&value| {
+                let mut start = first.clone();
+                start[index] = value;
+                start
+            })
+            .collect();
+        self.min[index] = self.min[index].max(range.0);
+        self.max[index] = self.max[index].min(range.1);
+        self
+    }
+}

@@ -1,0 +1,111 @@
+//! What a fit found, in the model's own terms.
+
+use super::{Estimate, Estimated, Fit, Key};
+use crate::estimate::rank::unseen;
+use crate::evaluate::EvaluateError;
+use crate::model::with_parameters;
+use crate::optimise::Levenberg;
+use crate::statistics::covariance;
+use crate::system::{Placed, System};
+
+impl Fit<'_> {
+    /// What came out, with intervals.
+    pub(super) fn told(&self, done: &Levenberg, before: f64) -> Result<Estimate, EvaluateError> {
+        let count = done.residuals.len().max(1) as f64;
+        let scaled: Vec<Vec<f64>> = done
+            .columns
+            .iter()
+            .zip(&self.unknowns)
+            .map(|(column, u)| column.iter().map(|v| v * u.scale).collect())
+            .collect();
+        let variance = done.squares / count;
+        let ridge: Vec<f64> = self
+            .unknowns
+            .iter()
+            .map(|u| u.prior.map_or(0.0, |(_, d)| variance * (u.scale / d).powi(2)))
+            .collect();
+        let covariance = covariance(&scaled, &done.residuals, 1, &ridge);
+        let mut parameters = vec![];
+        for (i, (name, unit)) in self.names.iter().enumerate() {
+            let u = &self.unknowns[i];
+            let value = done.point[i];
+            let at_bound = value <= u.bounds.0 || value >= u.bounds.1;
+            let error = covariance.as_ref().map(|c| c[(i, i)].sqrt() * u.scale);
+            let error =
+                error.filter(|e| e.is_finite() && *e < 1e3 * value.abs().max(u.scale) && !at_bound);
+            parameters.push(Estimated {
+                name: name.clone(),
+                from: u.start,
+                value,
+                std_error: error,
+                interval95: error.map(|e| [value - 1.96 * e, value + 1.96 * e]),
+                unit: unit.clone(),
+                at_bound,
+            });
+        }
+        let names: Vec<String> = self.names.iter().map(|(name, _)| name.clone()).collect();
+        // initial states may explain part of a change: what is left counts
+        let mut basis = vec![];
+        for column in scaled.iter().skip(self.names.len()) {
+            crate::statistics::add_to_basis(&mut basis, column.clone());
+        }
+        let relative: Vec<Vec<f64>> = done
+            .columns
+            .iter()
+            .zip(&done.point)
+            .take(self.names.len())
+            .map(|(column, &value)| {
+                let factor = if value == 0.0 { 1.0 } else { value.abs() };
+                let mut column: Vec<f64> = column.iter().map(|v| v * factor).collect();
+                crate::statistics::project(&basis, &mut column);
+                column
+            })
+            .collect();
+        let undetermined =
+            if done.columns.len() == self.keys.len() { unseen(&names, &relative) } else { vec![] };
+        Ok(Estimate {
+            system: self.with_values(&done.point)?,
+            parameters,
+            undetermined,
+            nrmse: (before.sqrt(), variance.sqrt()),
+            iterations: done.iterations,
+            interrupted: self.watch.stopped(),
+        })
+    }
+
+    /// The system with the values at a point.
+    fn with_values(&self, point: &[f64]) -> Result<System, EvaluateError> {
+        let first = &self.runs[0];
+        let mut changes = vec![];
+        let mut knobs = first.plan.knob_values();
+        for (&key, &value) in self.keys.iter().zip(point) {
+            match key {
+                Key::Theta(p) => {
+                    changes.push((first.plan.signals.parameters[p].name.clone(), value));
+                }
+                Key::Knob(k) => knobs[k] = value,
+                Key::Start(..) => {}
+            }
+        }
+        let written =
+            |error: serde_json::Error| EvaluateError::NotWritten { reason: error.to_string() };
+        let mut system = self.system.clone();
+        if !changes.is_empty() {
+            system.model =
+                with_parameters(self.system.model.as_ref(), &changes).map_err(written)?;
+        }
+        let mut slots = first.plan.slots.iter();
+        let mut effects: Vec<Placed> = vec![];
+        for placed in &self.system.effects {
+            let mut placed = placed.clone();
+            let is_data = placed.effect.card().mechanism == crate::effect::Mechanism::Data;
+            if let Some(slot) = (!is_data).then(|| slots.next()).flatten() {
+                let own = &knobs[slot.knobs..][..slot.card.knobs.len()];
+                placed.effect = placed.effect.with_values(own).map_err(written)?;
+            }
+            effects.push(placed);
+        }
+        system.effects = effects;
+        Ok(system)
+    }
+}
