@@ -5,9 +5,8 @@
 //! cargo run --release --example real_records -- OUT DATA
 //! ```
 //!
-//! `DATA` (`../shared/data` by default) holds `silverbox`, `cascaded_tanks` and `msd_paper`
-//! as CSV files; a set that is not there is skipped. Reports go to `OUT`; the table on stdout
-//! is the one of `docs/results.md`.
+//! `DATA` holds `silverbox`, `cascaded_tanks` and `msd_paper` as CSV files; a set that is not
+//! there is skipped. Reports go to `OUT`; the table on stdout is the one of `docs/results.md`.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -49,10 +48,12 @@ struct Case {
 }
 
 fn main() -> Outcome<()> {
-    let argument = |n: usize, default: &str| {
-        PathBuf::from(std::env::args().nth(n).unwrap_or_else(|| default.into()))
+    let mut arguments = std::env::args().skip(1).map(PathBuf::from);
+    let out = arguments.next().unwrap_or_else(|| "lacuna-out".into());
+    let Some(data) = arguments.next() else {
+        println!("skipped: say where the records are: real_records OUT DATA");
+        return Ok(());
     };
-    let (out, data) = (argument(1, "lacuna-out"), argument(2, "../shared/data"));
     let cases = [
         Case {
             name: "silverbox",
