@@ -10,6 +10,7 @@ mod finding;
 mod floor;
 mod grain;
 mod library;
+mod limits;
 mod measure;
 mod nominal;
 mod nuisance;

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::candidate::Candidate;
 use super::dependence::dependence;
 use super::library::{Allowed, library};
+use super::limits::{known_limits, limits};
 use super::nominal::Nominal;
 use super::nuisance::{Nuisance, Refit, refit};
 use super::pairs::{shortlist, stayed};
@@ -131,10 +132,31 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
+    /// Puts what the instruments cannot show into a model before anything is searched.
+    fn limited(&self, start: Model, slots: &mut Vec<Slot>) -> Model {
+        let mut model = start;
+        let outputs = self.problem.base.signals.outputs.clone();
+        for (o, signal) in outputs.iter().enumerate().filter(|_| self.most > 0) {
+            let at = limits(&self.problem.y[o], &self.problem.known[o]);
+            if !(at.0.is_finite() || at.1.is_finite()) {
+                continue;
+            }
+            let candidates = library(self.problem, self.nominal, &model, vec![], self.allowed);
+            if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
+                model = model.with(&cause, knobs);
+                let set = vec![(cause, 1.0)];
+                slots.push(Slot { set, others: vec![], score: ACCEPT_INDEPENDENT });
+            }
+        }
+        model
+    }
+
     /// Runs the search from a model to the end.
     pub fn run(mut self, start: Model) -> Option<Found> {
         self.tell(0.0, "simulating the baseline");
         self.flag(&start);
+        let mut slots: Vec<Slot> = vec![];
+        let start = self.limited(start, &mut slots);
         let mut model = self.fitted(start);
         self.flag(&model);
         self.problem.recorrect(&model);
@@ -144,7 +166,6 @@ impl<'a, 'b> Search<'a, 'b> {
         if dependence < 2.0 {
             self.accept = ACCEPT_INDEPENDENT;
         }
-        let mut slots: Vec<Slot> = vec![];
         let (mut first, mut last) = (None, None);
         let mut previous: Vec<Trial> = vec![];
         let mut only = None;

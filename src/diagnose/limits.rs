@@ -1,0 +1,72 @@
+//! Limits of the instruments: readings that stand at their largest or smallest value.
+
+use std::sync::Arc;
+
+use super::candidate::Candidate;
+
+/// Samples at a limit, at least, to call it one.
+const COUNT: usize = 8;
+/// Samples in a row at a limit that chance does not make.
+const RUN: usize = 4;
+/// How much more often a limit is read than the value next to it: what tells a limit from a
+/// coarse scale.
+const TIMES: usize = 5;
+
+/// The lowest and the highest value that a series cannot leave; infinite where there is none.
+pub(super) fn limits(y: &[f64], known: &[bool]) -> (f64, f64) {
+    let values: Vec<f64> = y.iter().zip(known).filter(|(_, k)| **k).map(|(y, _)| *y).collect();
+    let negative: Vec<f64> = values.iter().map(|v| -v).collect();
+    (upper(&negative).map_or(f64::NEG_INFINITY, |v| -v), upper(&values).unwrap_or(f64::INFINITY))
+}
+
+fn upper(values: &[f64]) -> Option<f64> {
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let next = values.iter().copied().filter(|&v| v < largest).fold(f64::NEG_INFINITY, f64::max);
+    let count = |at: f64| values.iter().filter(|&&v| v == at).count();
+    let mut longest = 0;
+    let mut run = 0;
+    for &v in values {
+        run = if v == largest { run + 1 } else { 0 };
+        longest = longest.max(run);
+    }
+    let often = count(largest);
+    // a series that rests at its largest value most of the time has no limit but a level
+    let rests = 2 * often > values.len();
+    (often >= COUNT && longest >= RUN && often >= TIMES * count(next) && !rests).then_some(largest)
+}
+
+/// The limits of an output as a cause that is known before any search; `None` without any.
+pub(super) fn known_limits(
+    candidates: &[Arc<Candidate>],
+    output: &str,
+    (low, high): (f64, f64),
+) -> Option<(Arc<Candidate>, Vec<f64>)> {
+    if !(low.is_finite() || high.is_finite()) {
+        return None;
+    }
+    let found = candidates.iter().find(|c| {
+        c.effect == "saturation" && c.into == output && c.of.as_deref() == Some(output)
+    })?;
+    let mut cause = Candidate::clone(found);
+    // read off the record, so there is nothing to refine
+    cause.refine = vec![];
+    cause.starts = vec![vec![low, high]];
+    Some((Arc::new(cause), vec![low, high]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readings_that_stand_at_the_top_are_at_a_limit_and_a_coarse_scale_is_none() {
+        let wave = |k: usize| (k as f64 / 30.0).sin();
+        let clipped: Vec<f64> = (0..1000).map(|k| wave(k).min(0.9)).collect();
+        let known = vec![true; 1000];
+        assert_eq!(limits(&clipped, &known), (f64::NEG_INFINITY, 0.9));
+        let coarse: Vec<f64> = (0..1000).map(|k| (8.0 * wave(k)).round() / 8.0).collect();
+        assert_eq!(limits(&coarse, &known), (f64::NEG_INFINITY, f64::INFINITY));
+        let free: Vec<f64> = (0..1000).map(wave).collect();
+        assert_eq!(limits(&free, &known), (f64::NEG_INFINITY, f64::INFINITY));
+    }
+}
