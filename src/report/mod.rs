@@ -126,6 +126,6 @@ impl<'a> Report<'a> {
 }
 
 const FOOTER: &str = "<footer>Read from top to bottom: what was found, how it shows, what else was \
-considered, what is left. A value \"a +- b\" has b as two standard errors. \"Removable\" is the mean \
+considered, what is left. A value \"a \u{b1} b\" has b as two standard errors. \"Removable\" is the mean \
 square error above the noise floor. A look-alike would remove nearly as much: the record cannot tell \
 it from the cause named; a runner-up would remove clearly less.</footer>";

@@ -20,7 +20,9 @@ impl Page {
     /// Adds an element with text.
     pub fn element(&mut self, tag: &str, class: &str, text: &str) {
         let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
-        let _ = writeln!(self.body, "<{tag}{class}>{}</{tag}>", escape(text));
+        // the terminal and the JSON document keep to ASCII
+        let text = escape(&text.replace(" +- ", " \u{b1} "));
+        let _ = writeln!(self.body, "<{tag}{class}>{text}</{tag}>");
     }
 
     /// Adds a heading.

@@ -117,18 +117,25 @@ impl Figure {
                 Item::Upright(value) => x.add(*value),
             }
         }
-        Some((x.widened(0.0)?, y.widened(0.05)?))
+        // a dot on the frame would be half a dot
+        let dots = self.items.iter().any(|(item, _, _)| matches!(item, Item::Dots(_)));
+        Some((x.widened(if dots { 0.02 } else { 0.0 })?, y.widened(0.05)?))
     }
 
     /// The plot as a file of its own, with its colours in it.
     pub fn file(&self) -> String {
         let style = include_str!("style.css");
         let own = format!("<style>{style}text{{font-family:system-ui,sans-serif}}</style>");
-        self.svg().replacen('>', &format!(">{own}"), 1)
+        self.drawing().replacen('>', &format!(">{own}"), 1)
+    }
+
+    /// The plot in a box that scrolls where the page is too narrow for it to be read.
+    pub fn svg(&self) -> String {
+        format!("<div class=\"scroll\">{}</div>", self.drawing())
     }
 
     /// The plot as an `<svg>` element whose colours come from the page's style.
-    pub fn svg(&self) -> String {
+    fn drawing(&self) -> String {
         let Some((xr, yr)) = self.ranges() else {
             return "<p class=\"note\">Nothing to draw.</p>".into();
         };
@@ -143,8 +150,9 @@ impl Figure {
         let px = |v: f64| LEFT + w * position(v, xr, self.x.1);
         let py = |v: f64| top + h * (1.0 - position(v, yr, self.y.1));
         let mut s = format!(
-            "<svg viewBox=\"0 0 {WIDTH} {}\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\">",
-            self.height
+            "<svg viewBox=\"0 0 {WIDTH} {}\" role=\"img\" aria-label=\"{}\" xmlns=\"http://www.w3.org/2000/svg\">",
+            self.height,
+            escape(&format!("{} against {}", self.y.0, self.x.0))
         );
         for tick in ticks(xr, self.x.1, 7) {
             let x = px(tick);
@@ -341,11 +349,12 @@ fn ticks((low, high): (f64, f64), scale: Scale, about: usize) -> Vec<f64> {
 }
 
 fn label(v: f64, (low, high): (f64, f64), scale: Scale) -> String {
-    let size = low.abs().max(high.abs());
+    // even steps share their digits with the largest, even ratios each have their own
+    let size = if scale == Scale::Log { v.abs() } else { low.abs().max(high.abs()) };
     if v == 0.0 {
         return "0".into();
     }
-    if scale == Scale::Log || !(1e-3..1e5).contains(&size) {
+    if !(1e-3..1e5).contains(&size) {
         let text = format!("{v:.2e}");
         // 2.00e-4 is 2e-4
         let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));

@@ -95,7 +95,7 @@ fn other_track(page: &mut Page, finding: &Finding) {
         .map(|m| {
             let spread = m
                 .std_error
-                .map_or_else(String::new, |e| format!("+- {}", number(2.0 * e, Some(2.0 * e))));
+                .map_or_else(String::new, |e| format!("\u{b1} {}", number(2.0 * e, Some(2.0 * e))));
             vec![m.name.clone(), number(m.from, None), number(m.to, m.std_error), spread]
         })
         .collect();

@@ -1,0 +1,191 @@
+//! The report: one page that needs nothing else, whole, and safe whatever names it shows.
+
+use lacuna::data::{Record, Step, Table, Want};
+use lacuna::diagnose::{Diagnosis, Finding};
+use lacuna::file::{self, Format};
+use lacuna::report::Report;
+use lacuna::system::System;
+
+const MODEL: &str = include_str!("../src/cli/demo/model.toml");
+
+fn system(more: &str) -> System {
+    file::parse(&format!("{MODEL}{more}"), "model.toml", Format::Toml).unwrap()
+}
+
+fn record(name: &str, system: &System) -> Record {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli/demo");
+    let signals = system.signals();
+    let pairs = |list: &[lacuna::model::Signal]| {
+        list.iter().map(|s| (s.name.clone(), s.unit.clone())).collect()
+    };
+    let want = Want {
+        inputs: pairs(&signals.inputs),
+        outputs: pairs(&signals.outputs),
+        step: Step::Free { default: None },
+        outputs_required: true,
+        minimum: 10,
+    };
+    Table::open(folder.join(name)).unwrap().record_for(&want).unwrap().0
+}
+
+fn finding(system: &System) -> Finding {
+    let (est, test) = (record("est.csv.gz", system), record("test.csv.gz", system));
+    Diagnosis::of(system).run(&[est], Some(&test), &()).unwrap()
+}
+
+/// Every element is closed, in order; returns the names that were opened.
+fn elements(html: &str) -> Vec<String> {
+    let (mut open, mut all) = (vec![], vec![]);
+    let mut rest = html;
+    while let Some(at) = rest.find('<') {
+        rest = &rest[at + 1..];
+        let end = rest.find('>').expect("a tag that does not end");
+        let tag = &rest[..end];
+        rest = &rest[end + 1..];
+        assert!(!tag.contains('<'), "a tag inside a tag: {tag}");
+        let name: String =
+            tag.trim_start_matches('/').chars().take_while(char::is_ascii_alphanumeric).collect();
+        if tag.starts_with('!') || name == "meta" {
+            continue;
+        }
+        if tag.starts_with('/') {
+            assert_eq!(open.pop().as_ref(), Some(&name), "closed in another order: {tag}");
+        } else {
+            all.push(name.clone());
+            if !tag.ends_with('/') {
+                open.push(name);
+            }
+        }
+    }
+    assert!(open.is_empty(), "never closed: {open:?}");
+    all
+}
+
+fn headings(html: &str) -> Vec<&str> {
+    html.split("<h2>").skip(1).map(|part| &part[..part.find("</h2>").unwrap()]).collect()
+}
+
+/// Nothing is loaded, run or sent.
+fn stands_alone(html: &str) {
+    let without_namespace = html.replace("http://www.w3.org/2000/svg", "");
+    for word in [
+        "http:",
+        "https:",
+        "//",
+        "<script",
+        "<link",
+        "<img",
+        "<iframe",
+        "<object",
+        "src=",
+        "href",
+        "@import",
+        "url(",
+        "onload",
+        "onerror",
+        "javascript",
+    ] {
+        let at = without_namespace.find(word);
+        assert!(at.is_none(), "{word}: {:?}", at.map(|i| &without_namespace[i..][..40]));
+    }
+    assert!(html.starts_with("<!DOCTYPE html>") && html.contains("charset=\"utf-8\""));
+    assert!(html.len() < 400_000, "{} bytes", html.len());
+}
+
+#[test]
+fn every_section_of_a_finding() {
+    let system = system("");
+    let finding = finding(&system);
+    let html = Report::of(&finding).titled("two masses").html();
+    stands_alone(&html);
+    let elements = elements(&html);
+    let heads = headings(&html);
+    for head in [
+        "coulomb_friction into force_1 of v_1",
+        "y: measured and simulated",
+        "Figures",
+        "If parameters are treated otherwise",
+        "First look at all candidates",
+        "Looked for and not found",
+        "What is left",
+    ] {
+        assert!(heads.contains(&head), "no section `{head}` among {heads:?}");
+    }
+    // the force against the speed, close-up, residual, spectrum, correlation
+    assert_eq!(elements.iter().filter(|name| *name == "svg").count(), 5);
+    for words in [
+        "Spectrum of the residual of y",
+        "noise floor",
+        "Residual of y against the past of u",
+        "95 % interval",
+        "looks alike",
+        "runner-up",
+        "smallest seen",
+        "on data not used before",
+    ] {
+        assert!(html.contains(words), "no `{words}`");
+    }
+    // the sentence stands on top, as a person would write it
+    let top = &html[html.find("<h1>").unwrap()..html.find("</h1>").unwrap()];
+    assert!(top.contains("Dry friction on force_1") && top.contains('\u{b1}'), "{top}");
+    assert_eq!(html.matches("<h1").count(), 1);
+    for wrong in ["NaN", "inf ", "undefined", " +- "] {
+        assert!(!html.contains(wrong), "{wrong}");
+    }
+    // the same finding makes the same bytes
+    assert_eq!(html, Report::of(&finding).titled("two masses").html());
+}
+
+#[test]
+fn drawings_stay_within_their_frames() {
+    let html = Report::of(&finding(&system(""))).html();
+    for svg in html.split("<svg ").skip(1) {
+        let svg = &svg[..svg.find("</svg>").unwrap()];
+        let frame = svg.split("viewBox=\"0 0 ").nth(1).unwrap();
+        let size: Vec<f64> =
+            frame[..frame.find('"').unwrap()].split(' ').map(|v| v.parse().unwrap()).collect();
+        let mut points = 0;
+        for line in svg.split("points=\"").skip(1) {
+            for point in line[..line.find('"').unwrap()].split(' ') {
+                let (x, y) = point.split_once(',').unwrap();
+                let (x, y): (f64, f64) = (x.parse().unwrap(), y.parse().unwrap());
+                assert!((0.0..=size[0]).contains(&x) && (0.0..=size[1]).contains(&y), "{point}");
+                points += 1;
+            }
+        }
+        assert!(points > 10, "an empty drawing");
+    }
+}
+
+#[test]
+fn nothing_found_says_what_was_looked_for() {
+    let known = "[[effects]]\ninto = \"force_1\"\nof = \"v_1\"\n\
+        effect.coulomb_friction = { level = -1.5, width = 0.02 }\n";
+    let finding = finding(&system(known));
+    assert!(finding.causes.is_empty(), "{finding}");
+    let html = Report::of(&finding).html();
+    stands_alone(&html);
+    elements(&html);
+    let heads = headings(&html);
+    assert!(heads.contains(&"Looked for and not found"), "{heads:?}");
+    assert!(!html.contains("extended model</text>"), "a model that does not exist is drawn");
+}
+
+#[test]
+fn names_and_units_are_shown_not_obeyed() {
+    let model = "[model.equations]
+inputs  = [{ name = \"u\", unit = \"<b>N</b>\" }]
+states  = [{ name = \"x\", unit = \"m&\", derivative = \"u - 2*x\" }]
+outputs = [{ name = \"y\", unit = \"m&\", value = \"x\" }]
+";
+    let system = file::parse(model, "m.toml", Format::Toml).unwrap();
+    let u: Vec<f64> = (0..400).map(|k| (0.3 * f64::from(k)).sin() + 0.2).collect();
+    let y: Vec<f64> = u.iter().map(|u| 0.4 * u + 0.1 * u * u).collect();
+    let record = Record::new(0.1).input("u", u).unwrap().output("y", y).unwrap();
+    let finding = Diagnosis::of(&system).max_causes(1).run(&[record], None, &()).unwrap();
+    let html = Report::of(&finding).titled("<script>alert('press')</script> \"7\" & more").html();
+    stands_alone(&html.replace("/script", ""));
+    elements(&html);
+    assert!(html.contains("&lt;script&gt;alert(&#39;press&#39;)&lt;/script&gt;"));
+    assert!(html.contains("m&amp;") && !html.contains("<b>"));
+}
