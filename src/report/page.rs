@@ -20,8 +20,8 @@ impl Page {
     /// Adds an element with text.
     pub fn element(&mut self, tag: &str, class: &str, text: &str) {
         let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
-        // the terminal and the JSON document keep to ASCII
-        let text = escape(&text.replace(" +- ", " \u{b1} "));
+        // the terminal and the JSON document keep to ASCII; a number and its % stay together
+        let text = escape(&text.replace(" +- ", " \u{b1} ").replace(" %", "\u{a0}%"));
         let _ = writeln!(self.body, "<{tag}{class}>{text}</{tag}>");
     }
 
