@@ -55,6 +55,8 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Look) -> Resul
     let known = checkpoint.path.exists();
     look.hear_interrupts()?;
     let (start, started) = recipe.start(&system, &records, recipe.training.seed)?;
+    // what cannot be saved is better known before the work than after it
+    AugmentedModel::new(start.model.clone()).into_system()?;
     look.say(&started.to_string());
     if known {
         look.say("Going on from the checkpoint.");
