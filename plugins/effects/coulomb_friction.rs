@@ -36,7 +36,8 @@ impl Effect for CoulombFriction {
     #[inline(always)]
     fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
         let &[level, width] = at.knobs();
-        level * (at.z() / width).tanh()
+        // a step where the width is 0, not a number divided by it
+        level * (at.z() / width.max(R::constant(1e-30))).tanh()
     }
 
     fn search(&self, view: &View) -> Search {

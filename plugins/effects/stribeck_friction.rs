@@ -43,7 +43,7 @@ impl Effect for StribeckFriction {
     fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
         let &[level, extra, speed, width] = at.knobs();
         let ratio = at.z() / speed;
-        (level + extra * (-(ratio * ratio)).exp()) * (at.z() / width).tanh()
+        (level + extra * (-(ratio * ratio)).exp()) * (at.z() / width.max(R::constant(1e-30))).tanh()
     }
 
     fn search(&self, view: &View) -> Search {

@@ -1,6 +1,6 @@
 //! `lacuna study`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::args::{Study as Args, StudyVerb};
 use super::failure::Failure;
@@ -58,7 +58,7 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Look) -> Resul
     finish(&StudyResult::merge(std::slice::from_ref(&args.out))?, &args.out, look)
 }
 
-fn finish(result: &StudyResult, out: &PathBuf, look: &Look) -> Result<u8, Failure> {
+fn finish(result: &StudyResult, out: &Path, look: &Look) -> Result<u8, Failure> {
     result.write(out)?;
     for summary in result.summaries() {
         for q in summary.test.iter().flatten() {

@@ -144,7 +144,8 @@ impl<'a> Steps<'a> {
 
     /// Writes an epoch into the history, with its score where it is due.
     fn close(&mut self, epoch: usize, loss: Option<f64>) -> Result<(), TrainError> {
-        let due = epoch % self.trainer.validation.every == 0 || epoch == self.trainer.epochs;
+        let due =
+            epoch.is_multiple_of(self.trainer.validation.every) || epoch == self.trainer.epochs;
         let parameters = self.units.leave(&self.state.theta);
         let score = match &mut self.scorer {
             Some(scorer) if due => Some(scorer.score(&parameters)?),

@@ -169,6 +169,11 @@ impl Plant {
 }
 
 impl Hidden {
+    /// Whether a cause is headed by this one.
+    pub fn heads(&self, cause: &Cause) -> bool {
+        cause.effect == self.effect && cause.into == self.into && cause.of.as_deref() == self.of
+    }
+
     /// Whether a cause is this one, or says that it cannot tell.
     pub fn is_named(&self, cause: &Cause) -> bool {
         let same = |e: &str, into: &str, of: Option<&str>| {
