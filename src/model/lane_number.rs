@@ -11,7 +11,7 @@ pub type Dual64 = Dual<F64x8, DIRECTIONS>;
 /// Single precision with slopes along [`DIRECTIONS`] directions.
 pub type Dual32 = Dual<F32x16, DIRECTIONS>;
 
-/// A number that a [`Law`] can be called with.
+/// A number that a [`Law`](super::Law) can be called with.
 pub trait LaneNumber: InRegisters {
     /// Numbers side by side.
     const LANES: usize;

@@ -4,9 +4,9 @@
 //! table -- parse --> expressions -- join --> graph -- cut --> programs -- run on lanes
 //! ```
 //!
-//! Text becomes trees ([`parse`]), trees become one graph in which equal terms are there
-//! once ([`graph`]), and what each question needs of it becomes a list of instructions
-//! ([`program`]) that a small machine runs for 64 lanes at a time ([`run`]).
+//! Text becomes trees (`parse`), trees become one graph in which equal terms are there
+//! once (`graph`), and what each question needs of it becomes a list of instructions
+//! (`program`) that a small machine runs for 64 lanes at a time (`run`).
 
 mod build;
 mod error;
