@@ -10,6 +10,9 @@ use super::Baseline;
 use super::block::Pace;
 use super::number::{Number, per_row, repeated};
 
+/// Bytes of parameters that a law is asked with at once: a third of what is nearest.
+const NEAR: usize = 12 * 1024;
+
 /// A baseline prepared for one precision and one value of its parameters.
 pub(crate) struct Driver<'a, E: Number> {
     pub(super) law: &'a dyn Law,
@@ -129,16 +132,36 @@ impl<'a, E: Number> Driver<'a, E> {
         &self,
         ask: Ask,
         constants: &Constants<R>,
-        [x, u]: [&[R]; 2],
+        x: &[R],
+        u: &[R],
         time: impl Fn(usize) -> R,
         out: &mut [R],
     ) {
         let (sizes, packs) = (self.sizes, per_row::<E>());
-        let Constants { theta, derived, w } = constants;
-        let block = Block { sizes, packs, theta, derived, x, u, w, time: time(0) };
+        let (theta, derived, w) = (&constants.theta[..], &constants.derived[..], &constants.w[..]);
         if !self.timed {
-            return self.law.answer(ask, R::call(&block, out));
+            // parameters are the same in all packs: a few copies stay near the processor
+            let copy = size_of::<R>() * (sizes.theta + sizes.derived + sizes.w).max(1);
+            let together = (NEAR / copy).clamp(1, packs);
+            let time = time(0);
+            for from in (0..packs).step_by(together) {
+                let packs = together.min(packs - from);
+                let block = Block {
+                    sizes,
+                    packs,
+                    theta: &theta[..packs * sizes.theta],
+                    derived: &derived[..packs * sizes.derived],
+                    x: &x[from * sizes.x..][..packs * sizes.x],
+                    u: &u[from * sizes.u..][..packs * sizes.u],
+                    w: &w[..packs * sizes.w],
+                    time,
+                };
+                let n = sizes.answer(ask);
+                self.law.answer(ask, R::call(&block, &mut out[from * n..][..packs * n]));
+            }
+            return;
         }
+        let block = Block { sizes, packs, theta, derived, x, u, w, time: time(0) };
         for (pack, out) in out.chunks_mut(sizes.answer(ask).max(1)).enumerate() {
             self.law.answer(ask, R::call(&one(&block, pack, time(pack)), out));
         }

@@ -109,8 +109,7 @@ impl<E: Number> Room<E> {
                 let begin = if keep { first + i * size } else { 0 };
                 let trial = &self.kept[begin..begin + size];
                 let time = |p: usize| time::<E>(sight, p, at * h);
-                let seen = [trial, &self.u[1][..]];
-                driver.ask(Ask::Derivative, &driver.plain, seen, time, &mut self.k);
+                driver.ask(Ask::Derivative, &driver.plain, trial, &self.u[1], time, &mut self.k);
                 let further = tableau.get(i + 1).map_or(0.0, |next| h * next.from_before);
                 let next = if keep { begin + size } else { 0 };
                 let trial = &mut self.kept[next..next + size];
@@ -130,9 +129,8 @@ impl<E: Number> Room<E> {
     /// h_base: the outputs now.
     pub fn output(&mut self, driver: &Driver<'_, E>, sight: Sight<'_, E>, y: &mut [Row<E>]) {
         self.begin(driver, sight);
-        let seen = [&self.x[..], &self.u[1][..]];
         let time = |p: usize| time::<E>(sight, p, 0.0);
-        driver.ask(Ask::Output, &driver.plain, seen, time, &mut self.y);
+        driver.ask(Ask::Output, &driver.plain, &self.x, &self.u[1], time, &mut self.y);
         combine::collect(&self.y, lanes_mut(y), per_row::<E>());
     }
 
@@ -236,7 +234,7 @@ impl<E: Number> Room<E> {
                 E::parts_mut(std::slice::from_mut(&mut dual))[0].value = time::<E>(sight, p, later);
                 dual
             };
-            driver.ask(ask, &group.constants, [dual_x, dual_u], time, results);
+            driver.ask(ask, &group.constants, dual_x, dual_u, time, results);
             let kinds = [
                 (&mut self.pulled, n.x, 0..inputs),
                 (&mut self.along_u, n.u, inputs..theta),

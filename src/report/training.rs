@@ -181,10 +181,13 @@ impl<'a> TrainingReport<'a> {
             }
             row
         };
-        // the best epoch and about thirty others
-        let every = self.fit.history.len().div_ceil(30).max(1);
-        let kept = self.fit.history.iter();
-        let kept = kept.filter(|e| e.epoch % every == 0 || e.epoch == self.fit.epoch);
+        // the best epoch and about thirty others, scored ones where there are some
+        let scored = self.fit.history.iter().filter(|e| e.score.is_some()).count();
+        let listed = |e: &&Epoch| scored == 0 || e.score.is_some();
+        let every = self.fit.history.iter().filter(listed).count().div_ceil(30).max(1);
+        let numbered = self.fit.history.iter().filter(listed).enumerate();
+        let kept = numbered.filter(|(i, e)| i % every == 0 || e.epoch == self.fit.epoch);
+        let kept = kept.map(|(_, epoch)| epoch);
         let rows: Vec<Vec<String>> = kept.map(row).collect();
         page.table(&header.iter().map(|h| &h[..]).collect::<Vec<_>>(), &rows);
     }

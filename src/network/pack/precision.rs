@@ -87,7 +87,7 @@ macro_rules! precision {
 // the leading 32 bits of ln 2 in double precision, 11 in single precision
 precision!(
     f64,
-    32,
+    64,
     8,
     F64x8,
     F64x4,
@@ -99,7 +99,7 @@ precision!(
 );
 precision!(
     f32,
-    64,
+    128,
     16,
     F32x16,
     F32x8,
