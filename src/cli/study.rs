@@ -9,17 +9,26 @@ use super::look::Look;
 use crate::data::Record;
 use crate::diagnose::number;
 use crate::file::Document;
-use crate::study::{Inputs, MonteCarlo, StudyResult};
+use crate::study::{ExamResult, Inputs, MonteCarlo, StudyResult};
+
+mod exam;
 
 pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Look) -> Result<u8, Failure> {
     if let Some(StudyVerb::Merge(merge)) = &args.verb {
+        if merge.folders.iter().any(|folder| ExamResult::lies_in(folder)) {
+            return exam::finish(&ExamResult::merge(&merge.folders)?, &merge.out, look);
+        }
         let result = StudyResult::merge(&merge.folders)?;
         return finish(&result, &merge.out, look);
     }
     let Some(config) = &args.config else {
         return Err(Failure::work("a study needs --config, or `merge` and folders".into()));
     };
-    let study: MonteCarlo = Document::load(config)?.read()?;
+    let document = Document::load(config)?;
+    if document.has("systems") {
+        return exam::run(&document, config, args, seed, threads, look);
+    }
+    let study: MonteCarlo = document.read()?;
     study.check()?;
     let (i, n) = args.shard.unwrap_or((1, 1));
     let jobs = study.share(i, n)?;
@@ -34,8 +43,7 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Look) -> Resul
         system,
     };
     look.hear_interrupts()?;
-    let threads =
-        threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
+    let threads = all_unless(threads);
     let (wanted, whole) = (jobs.len(), n == 1);
     let done = study.run(&inputs, &jobs, i == 1, threads, seed, &args.out, look)?;
     look.clear();
@@ -56,6 +64,10 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Look) -> Resul
         return Ok(0);
     }
     finish(&StudyResult::merge(std::slice::from_ref(&args.out))?, &args.out, look)
+}
+
+fn all_unless(threads: Option<usize>) -> usize {
+    threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
 }
 
 fn finish(result: &StudyResult, out: &Path, look: &Look) -> Result<u8, Failure> {

@@ -117,6 +117,11 @@ impl Document {
         read::read(&self.root).map_err(|found| self.fault(&found.key, found.at, found.complaint))
     }
 
+    /// Whether there is a key at the top.
+    pub fn has(&self, key: &str) -> bool {
+        self.root.entry(key).is_some()
+    }
+
     /// What the document holds.
     pub(super) fn root(&self) -> &Node {
         &self.root

@@ -1,6 +1,7 @@
 //! What can go wrong in a study.
 
 use crate::data::DataError;
+use crate::diagnose::DiagnoseError;
 use crate::evaluate::EvaluateError;
 use crate::fault::{Explain, Kind};
 use crate::file::FileError;
@@ -14,6 +15,9 @@ pub enum StudyError {
     /// A record cannot be made or read.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// A diagnosis cannot be run.
+    #[error(transparent)]
+    Diagnose(#[from] DiagnoseError),
     /// A simulation cannot be run.
     #[error(transparent)]
     Evaluate(#[from] EvaluateError),
@@ -66,6 +70,7 @@ impl Explain for StudyError {
     fn kind(&self) -> Kind {
         match self {
             Self::Data(error) => error.kind(),
+            Self::Diagnose(error) => error.kind(),
             Self::Evaluate(error) => error.kind(),
             Self::System(error) => error.kind(),
             Self::File(error) => error.kind(),
@@ -78,6 +83,7 @@ impl Explain for StudyError {
     fn hint(&self) -> Option<String> {
         match self {
             Self::Data(error) => error.hint(),
+            Self::Diagnose(error) => error.hint(),
             Self::Evaluate(error) => error.hint(),
             Self::System(error) => error.hint(),
             Self::File(error) => error.hint(),
@@ -95,6 +101,7 @@ impl Explain for StudyError {
     fn place(&self) -> crate::fault::Place {
         match self {
             Self::Data(error) => error.place(),
+            Self::Diagnose(error) => error.place(),
             Self::Evaluate(error) => error.place(),
             Self::System(error) => error.place(),
             Self::File(error) => error.place(),

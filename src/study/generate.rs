@@ -112,7 +112,7 @@ pub struct OutputTruth {
 }
 
 /// Keeps the seeds of records, inputs and noises apart.
-fn seed_of(seed: u64, record: u64, what: u64) -> u64 {
+pub(super) fn seed_of(seed: u64, record: u64, what: u64) -> u64 {
     let mut mixed = seed ^ 0x6a09_e667_f3bc_c908;
     for part in [record, what] {
         mixed = (mixed ^ part).wrapping_mul(0x9e37_79b9_7f4a_7c15);
@@ -221,11 +221,11 @@ fn header(name: &str, unit: &str) -> String {
     if unit.is_empty() { name.into() } else { format!("{name} [{unit}]") }
 }
 
-fn rms(values: &[f64]) -> f64 {
+pub(super) fn rms(values: &[f64]) -> f64 {
     (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
 
-fn deviation(values: &[f64]) -> f64 {
+pub(super) fn deviation(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     rms(&values.iter().map(|v| v - mean).collect::<Vec<_>>())
 }

@@ -3,9 +3,11 @@
 //! [`Generate`] makes records whose truth is known. A [`MonteCarlo`] trains one model from
 //! several starts with several seeds; its [`Job`]s can be shared among machines, and what
 //! comes out does not depend on how they were shared. [`NoiseStudy`] tells how far each
-//! start's encoder is from the states at several noise levels.
+//! start's encoder is from the states at several noise levels. An [`Exam`] hides effects in
+//! machines and marks what the diagnosis makes of their records.
 
 mod error;
+mod exam;
 mod figures;
 mod generate;
 mod job;
@@ -15,6 +17,7 @@ mod result;
 mod run;
 
 pub use error::StudyError;
+pub use exam::{Case, Concealed, Exam, ExamResult, Hit, Kind, Machine, Marks, Tally};
 pub use figures::StudyReport;
 pub use generate::{Generate, Generated, Truth};
 pub use job::{Done, Frame, Job};

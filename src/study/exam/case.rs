@@ -1,0 +1,167 @@
+//! One question of an exam.
+
+use serde::{Deserialize, Serialize};
+
+use super::Exam;
+use crate::data::Random;
+use crate::study::StudyError;
+
+/// What is asked.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Kind {
+    /// Nothing is hidden: nothing may be named.
+    Nothing,
+    /// One effect.
+    One,
+    /// One effect that is not looked for.
+    Missing,
+    /// Two effects.
+    Two,
+    /// Three effects.
+    Three,
+}
+
+/// One record with what is hidden in it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Case {
+    /// Its number in the exam, from 1.
+    pub number: usize,
+    /// Number of the machine, from 0.
+    pub system: usize,
+    /// What is asked.
+    pub kind: Kind,
+    /// Numbers of the hidden effects, from 0.
+    pub hidden: Vec<usize>,
+    /// Size of each.
+    pub g: f64,
+    /// Samples of the record.
+    pub samples: usize,
+    /// Ratio of output to noise, dB.
+    pub snr_db: f64,
+    /// Pole of the noise.
+    pub noise_pole: f64,
+    /// Share by which the model's free parameters are off.
+    pub parameter_error: f64,
+    /// Number of the draw, from 1.
+    pub seed: u64,
+}
+
+impl Exam {
+    /// All cases, in order.
+    ///
+    /// # Errors
+    ///
+    /// As [`Exam::check`].
+    pub fn cases(&self) -> Result<Vec<Case>, StudyError> {
+        self.check()?;
+        let mut cases = vec![];
+        for &samples in &self.samples {
+            for &snr_db in &self.snr_db {
+                for &noise_pole in &self.noise_pole {
+                    for &parameter_error in &self.parameter_error {
+                        let shape = Case {
+                            number: 0,
+                            system: 0,
+                            kind: Kind::Nothing,
+                            hidden: vec![],
+                            g: 0.0,
+                            samples,
+                            snr_db,
+                            noise_pole,
+                            parameter_error,
+                            seed: 0,
+                        };
+                        self.under(&shape, &mut cases);
+                    }
+                }
+            }
+        }
+        for (i, case) in cases.iter_mut().enumerate() {
+            case.number = i + 1;
+        }
+        Ok(cases)
+    }
+
+    /// The cases of shard `i` of `n`, counted from 1: every n-th.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such shard.
+    pub fn share(&self, i: usize, n: usize) -> Result<Vec<Case>, StudyError> {
+        if i == 0 || i > n {
+            let found = format!("{i}/{n}");
+            return Err(StudyError::setting("shard", found, "1/n up to n/n"));
+        }
+        Ok(self.cases()?.into_iter().skip(i - 1).step_by(n).collect())
+    }
+
+    /// All cases under the same conditions.
+    fn under(&self, shape: &Case, cases: &mut Vec<Case>) {
+        for (system, machine) in self.systems.iter().enumerate() {
+            for seed in 1..=self.seeds {
+                let of = |kind, hidden, g| Case {
+                    system,
+                    kind,
+                    hidden,
+                    g,
+                    // nulls of one seed are told apart below
+                    seed,
+                    ..shape.clone()
+                };
+                for null in 0..self.nulls as u64 {
+                    let seed = seed + self.seeds * null;
+                    cases.push(Case { seed, ..of(Kind::Nothing, vec![], 0.0) });
+                }
+                for &g in &self.sizes {
+                    for hidden in 0..machine.hidden.len() {
+                        if self.singles {
+                            cases.push(of(Kind::One, vec![hidden], g));
+                        }
+                        if self.missing {
+                            cases.push(of(Kind::Missing, vec![hidden], g));
+                        }
+                    }
+                    let draws = [(Kind::Two, 2, self.pairs), (Kind::Three, 3, self.triples)];
+                    for (kind, size, count) in draws {
+                        for draw in 0..count as u64 {
+                            let lot = seed.wrapping_mul(1_000_003) + draw * 101 + size as u64;
+                            let hidden = lots(machine.hidden.len(), size, lot + system as u64 * 17);
+                            cases.push(of(kind, hidden, g));
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Some of `of` numbers, each at most once, in order.
+fn lots(of: usize, wanted: usize, seed: u64) -> Vec<usize> {
+    let mut random = Random::new(seed);
+    let mut all: Vec<usize> = (0..of).collect();
+    let mut drawn: Vec<usize> = (0..wanted.min(of))
+        .map(|_| {
+            let at = (random.uniform() * all.len() as f64) as usize;
+            all.swap_remove(at)
+        })
+        .collect();
+    drawn.sort_unstable();
+    drawn
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lots_are_drawn_once_each() {
+        for seed in 0..50 {
+            let drawn = lots(5, 3, seed);
+            assert_eq!(drawn.len(), 3);
+            assert!(drawn.windows(2).all(|pair| pair[0] < pair[1]), "{drawn:?}");
+        }
+        assert_eq!(lots(2, 3, 1), [0, 1]);
+    }
+}

@@ -1,0 +1,223 @@
+//! Hides effects of a wanted size in a machine and makes its records.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Case, Machine};
+use crate::data::{Random, Record, noise};
+use crate::effect::{Mechanism, Role};
+use crate::evaluate::{Init, Simulation};
+use crate::model::with_parameters;
+use crate::study::StudyError;
+use crate::study::generate::{deviation, rms, seed_of};
+use crate::system::{Placed, System};
+
+/// An effect to hide, as in a model file. Its values say the direction; how far it goes
+/// follows from the wanted size.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Concealed {
+    /// The effect at its place.
+    #[serde(flatten)]
+    pub placed: Placed,
+    /// Knobs that grow with the size; absent: the first coefficient, else all that have a
+    /// neutral value.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub size: Vec<String>,
+}
+
+/// What belongs to one case.
+pub(super) struct Made {
+    /// What is handed to the diagnosis.
+    pub baseline: System,
+    /// The truth.
+    pub machine: System,
+    /// The record to diagnose.
+    pub record: Record,
+    /// A third record without noise, of another input.
+    pub third: Record,
+}
+
+impl Concealed {
+    /// `effect into place of coordinate`, short.
+    pub fn name(&self) -> String {
+        let of = self.placed.of.as_deref().unwrap_or("-");
+        format!("{}>{}<{of}", self.placed.effect.typetag_name(), self.placed.into)
+    }
+
+    /// The effect grown by a factor from nothing; `None` beyond what it can be.
+    fn grown(&self, factor: f64, system: &System) -> Result<Option<Placed>, StudyError> {
+        let card = self.placed.effect.card();
+        let mut values = card.values();
+        if card.mechanism == Mechanism::Parameter {
+            let signals = system.signals();
+            let Some(own) = signals.parameters.iter().find(|p| p.name == self.placed.into) else {
+                let known: Vec<&str> = signals.parameters.iter().map(|p| &p.name[..]).collect();
+                let expected = format!("a parameter of the model ({})", known.join(", "));
+                return Err(StudyError::setting("hidden.into", &self.placed.into, &expected));
+            };
+            values[0] = own.value + factor * (values[0] - own.value);
+            if !(values[0] > own.min && values[0] < own.max) {
+                return Ok(None);
+            }
+        } else {
+            let grows = |name: &str, role: Role, neutral: Option<f64>| match &self.size[..] {
+                [] if card.knobs.iter().any(|k| k.role == Role::Coefficient) => {
+                    role == Role::Coefficient
+                }
+                [] => neutral.is_some(),
+                named => named.iter().any(|n| n == name),
+            };
+            for (value, knob) in values.iter_mut().zip(&card.knobs) {
+                if grows(&knob.name, knob.role, knob.neutral) {
+                    *value = match knob.neutral {
+                        Some(neutral) if neutral.is_infinite() => *value / factor,
+                        Some(neutral) => neutral + factor * (*value - neutral),
+                        None => *value * factor,
+                    };
+                }
+            }
+        }
+        let effect = self.placed.effect.with_values(&values);
+        let effect = effect.map_err(|e| StudyError::setting("hidden.effect", e, "an effect"))?;
+        Ok(Some(Placed { effect, ..self.placed.clone() }))
+    }
+}
+
+impl Machine {
+    /// Checks that every effect can be where it is to be hidden.
+    pub(super) fn check(&self, system: &System) -> Result<(), StudyError> {
+        let sampling_time = system.sampling_time(self.sampling_time)?;
+        for concealed in &self.hidden {
+            let mut machine = system.clone();
+            machine.effects.extend(concealed.grown(1.0, system)?);
+            machine.plan(sampling_time)?;
+        }
+        Ok(())
+    }
+
+    /// A driven record without outputs.
+    fn driven(&self, system: &System, samples: usize, seed: u64) -> Result<Record, StudyError> {
+        let sampling_time = system.sampling_time(self.sampling_time)?;
+        let all = samples + self.transient;
+        let mut record = Record::new(sampling_time);
+        for (i, input) in system.signals().inputs.iter().enumerate() {
+            let excitation = self.inputs.get(&input.name).unwrap_or(&self.excitation);
+            let offset = self.offset.get(&input.name).copied().unwrap_or(0.0);
+            let mut u = excitation.generate(all, sampling_time, seed_of(seed, 0, i as u64))?;
+            u.iter_mut().for_each(|u| *u += offset);
+            record = record.input(&input.name, u)?;
+        }
+        Ok(record)
+    }
+
+    /// What a system makes of an input; `None` if it diverges.
+    fn outputs(&self, of: &System, driven: &Record) -> Result<Option<Vec<Vec<f64>>>, StudyError> {
+        let run = Simulation::of(of, driven, Init::Samples(0))?;
+        let cut = |(_, y): (String, Vec<f64>)| y[self.transient..].to_vec();
+        Ok(run.diverged_at.is_none().then(|| run.outputs.into_iter().map(cut).collect()))
+    }
+
+    fn measured(
+        &self,
+        driven: &Record,
+        of: &System,
+        y: Vec<Vec<f64>>,
+    ) -> Result<Record, StudyError> {
+        let mut record = driven.slice(self.transient..driven.len());
+        record.start = 0.0;
+        for (signal, y) in of.signals().outputs.iter().zip(y) {
+            record = record.output(&signal.name, y)?;
+        }
+        Ok(record)
+    }
+
+    /// Everything of a case.
+    pub(super) fn make(&self, truth: &System, case: &Case, seed: u64) -> Result<Made, StudyError> {
+        let own = seed_of(seed, case.seed, case.system as u64);
+        let driven = self.driven(truth, case.samples, own)?;
+        let diverges = || StudyError::Diverges { sample: 0 };
+        let base = self.outputs(truth, &driven)?.ok_or_else(diverges)?;
+        let sigma = |y: &Vec<f64>| deviation(y) * 10f64.powf(-case.snr_db / 20.0);
+        let sigmas: Vec<f64> = base.iter().map(sigma).collect();
+        let mut machine = truth.clone();
+        for &hidden in &case.hidden {
+            let grown = self.sized(hidden, truth, &driven, &base, &sigmas, case.g)?;
+            machine.effects.push(grown);
+        }
+        let y = self.outputs(&machine, &driven)?.ok_or_else(diverges)?;
+        let noisy = y.into_iter().zip(&sigmas).enumerate().map(|(o, (y, &sigma))| {
+            let seed = seed_of(own, 1, o as u64);
+            let e = match case.noise_pole {
+                0.0 => noise::white(y.len(), sigma, seed)?,
+                pole => noise::ar1(y.len(), pole, sigma, seed)?,
+            };
+            Ok::<_, StudyError>(y.iter().zip(e).map(|(y, e)| y + e).collect())
+        });
+        let record = self.measured(&driven, truth, noisy.collect::<Result<_, _>>()?)?;
+        let other = self.driven(truth, case.samples, seed_of(own, 2, 0))?;
+        let y = self.outputs(&machine, &other)?.ok_or_else(diverges)?;
+        let third = self.measured(&other, truth, y)?;
+        Ok(Made { baseline: off(truth, case, own)?, machine, record, third })
+    }
+
+    /// A hidden effect so large that it makes the residual 1 + g times the noise.
+    fn sized(
+        &self,
+        hidden: usize,
+        truth: &System,
+        driven: &Record,
+        base: &[Vec<f64>],
+        sigmas: &[f64],
+        g: f64,
+    ) -> Result<Placed, StudyError> {
+        let concealed = &self.hidden[hidden];
+        let want = ((1.0 + g).powi(2) - 1.0).sqrt();
+        let size = |factor: f64| -> Result<f64, StudyError> {
+            let Some(placed) = concealed.grown(factor, truth)? else {
+                return Ok(f64::INFINITY);
+            };
+            let mut machine = truth.clone();
+            machine.effects.push(placed);
+            let Some(y) = self.outputs(&machine, driven)? else { return Ok(f64::INFINITY) };
+            let of = |(o, y): (usize, &Vec<f64>)| {
+                let off: Vec<f64> = y.iter().zip(&base[o]).map(|(a, b)| a - b).collect();
+                rms(&off) / sigmas[o]
+            };
+            Ok(y.iter().enumerate().map(of).fold(0.0, f64::max))
+        };
+        let (mut low, mut high) = (1e-7, 1.0);
+        while size(high)? < want {
+            high *= 2.0;
+            if high > 1e7 {
+                let found = format!("{} at g = {g}", concealed.name());
+                return Err(StudyError::setting("hidden", found, "an effect that can be so large"));
+            }
+        }
+        for _ in 0..40 {
+            let middle = f64::sqrt(low * high);
+            if size(middle)? < want { low = middle } else { high = middle }
+        }
+        let placed = concealed.grown(low, truth)?;
+        placed.ok_or_else(|| StudyError::setting("hidden", concealed.name(), "a possible effect"))
+    }
+}
+
+/// The model that is handed out: its free parameters off by a share, up or down by lot.
+fn off(truth: &System, case: &Case, seed: u64) -> Result<System, StudyError> {
+    if case.parameter_error == 0.0 {
+        return Ok(truth.clone());
+    }
+    let mut random = Random::new(seed_of(seed, 3, 0));
+    let signals = truth.signals();
+    let changes: Vec<(String, f64)> = signals
+        .parameters
+        .iter()
+        .filter(|p| !p.fixed)
+        .map(|p| {
+            let sign = if random.uniform() < 0.5 { -1.0 } else { 1.0 };
+            (p.name.clone(), (p.value * (1.0 + sign * case.parameter_error)).clamp(p.min, p.max))
+        })
+        .collect();
+    let model = with_parameters(truth.model.as_ref(), &changes)
+        .map_err(|e| StudyError::setting("parameter_error", e, "values that the model takes"))?;
+    Ok(System { sampling: truth.sampling, model, effects: truth.effects.clone() })
+}

@@ -1,0 +1,179 @@
+//! What a diagnosis made of a case.
+
+use serde::{Deserialize, Serialize};
+
+use super::machine::Made;
+use super::{Case, Kind, Machine};
+use crate::diagnose::{Cause, Finding, Verdict};
+use crate::evaluate::{Init, Simulation};
+use crate::study::StudyError;
+use crate::system::{Placed, System};
+
+/// Standard errors to either side of a 95 % interval.
+const WIDE: f64 = 1.96;
+
+/// Whether a hidden effect was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Hit {
+    /// No cause holds it.
+    Missed,
+    /// It stands among what a cause cannot be told from.
+    InSet,
+    /// It heads a cause.
+    Exact,
+}
+
+/// The marks of one case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Marks {
+    /// Tells exams apart.
+    pub fingerprint: u64,
+    /// The question.
+    pub case: Case,
+    /// Name of the machine.
+    pub system: String,
+    /// What was hidden, short.
+    pub hidden: Vec<String>,
+    /// Whether each was found.
+    pub hits: Vec<Hit>,
+    /// Whether the first cause holds one of the hidden effects.
+    pub first: bool,
+    /// Names in the first cause's set, itself among them; 0 if there is no cause.
+    pub set_size: usize,
+    /// Headlines of the causes, short; faults of the data left out.
+    pub found: Vec<String>,
+    /// The verdict.
+    pub verdict: String,
+    /// Share of the mean square removed on a third record without noise; none with nothing
+    /// hidden.
+    pub removed: Option<f64>,
+    /// Whether each coefficient of an exact hit lies in its 95 % interval.
+    pub covered: Vec<bool>,
+    /// Whether the true gain lies in its 95 % interval.
+    pub gain_covered: Option<bool>,
+    /// Seconds of the diagnosis.
+    pub seconds: f64,
+}
+
+fn short(effect: &str, into: &str, of: Option<&str>) -> String {
+    format!("{effect}>{into}<{}", of.unwrap_or("-"))
+}
+
+fn headline(cause: &Cause) -> String {
+    short(&cause.effect, &cause.into, cause.of.as_deref())
+}
+
+fn hit(cause: &Cause, name: &str) -> Hit {
+    let in_set = || {
+        let mut others = cause.indistinguishable.iter();
+        others.any(|other| short(&other.effect, &other.into, other.of.as_deref()) == name)
+    };
+    match headline(cause) == name {
+        true => Hit::Exact,
+        false if in_set() => Hit::InSet,
+        false => Hit::Missed,
+    }
+}
+
+/// Mean square of what a system leaves of a record without noise, all outputs together.
+fn left(of: &System, made: &Made) -> Result<f64, StudyError> {
+    let run = Simulation::of(of, &made.third, Init::Forgotten)?;
+    let whole = run.diverged_at.is_none();
+    let all: f64 = run.metrics.iter().map(|(_, m)| m.rmse * m.rmse).sum();
+    Ok(if whole && all.is_finite() { all } else { f64::INFINITY })
+}
+
+/// Whether the coefficients of a cause hold the true ones; `parameter` carries its `value`.
+fn covers(cause: &Cause, truth: &Placed) -> Vec<bool> {
+    let card = truth.effect.card();
+    let mut inside = vec![];
+    for (knob, value) in card.knobs.iter().zip(card.values()) {
+        let known = cause.parameters.iter().find(|p| p.name == knob.name);
+        if let Some((of, error)) = known.and_then(|p| Some((p, p.std_error?))) {
+            inside.push((of.value - value).abs() <= WIDE * error);
+        }
+    }
+    inside
+}
+
+impl Marks {
+    /// Marks a finding.
+    pub(super) fn of(
+        case: &Case,
+        machine: &Machine,
+        made: &Made,
+        finding: &Finding,
+        fingerprint: u64,
+    ) -> Result<Self, StudyError> {
+        let causes: Vec<&Cause> = finding.causes.iter().filter(|c| c.rows.is_none()).collect();
+        let hidden: Vec<String> = case.hidden.iter().map(|&h| machine.hidden[h].name()).collect();
+        let best = |name: &String| causes.iter().map(|c| hit(c, name)).max();
+        let hits: Vec<Hit> = hidden.iter().map(|n| best(n).unwrap_or(Hit::Missed)).collect();
+        let truths = &made.machine.effects[made.machine.effects.len() - case.hidden.len()..];
+        let covered = hidden
+            .iter()
+            .zip(truths)
+            .filter_map(|(name, truth)| {
+                let cause = causes.iter().find(|c| hit(c, name) == Hit::Exact)?;
+                Some(covers(cause, truth))
+            })
+            .flatten()
+            .collect();
+        let removed = match case.kind {
+            Kind::Nothing => None,
+            _ => Some(1.0 - left(&finding.extended, made)? / left(&made.baseline, made)?),
+        };
+        let [low, high] = finding.gain.interval95;
+        Ok(Self {
+            fingerprint,
+            case: case.clone(),
+            system: machine.name(),
+            first: causes.first().is_some_and(|c| hidden.iter().any(|n| hit(c, n) > Hit::Missed)),
+            set_size: causes.first().map_or(0, |c| 1 + c.indistinguishable.len()),
+            found: causes.iter().map(|c| headline(c)).collect(),
+            verdict: verdict(finding.verdict).into(),
+            gain_covered: removed
+                .filter(|_| !causes.is_empty())
+                .map(|share| low <= share && share <= high),
+            removed,
+            covered,
+            hidden,
+            hits,
+            seconds: finding.seconds,
+        })
+    }
+
+    /// Whether all that was hidden was found.
+    pub fn all(&self) -> bool {
+        self.hits.iter().all(|hit| *hit > Hit::Missed)
+    }
+
+    /// Whether nothing was named beside what was hidden, by number. Wrong parameters may be.
+    pub fn spurious(&self) -> usize {
+        let named = self.found.iter().filter(|name| {
+            let wrong = self.case.parameter_error > 0.0 && name.starts_with("parameter>");
+            !wrong
+        });
+        named.count().saturating_sub(self.hits.iter().filter(|h| **h > Hit::Missed).count())
+    }
+
+    /// Whether the parameters of the model took the hidden effect upon themselves, nothing else
+    /// was named, and nearly all of the error went.
+    pub fn imitated(&self) -> bool {
+        !self.all()
+            && !self.found.is_empty()
+            && self.found.iter().all(|name| name.starts_with("parameter>"))
+            && self.removed.is_some_and(|share| share >= 0.9)
+    }
+}
+
+fn verdict(of: Verdict) -> &'static str {
+    match of {
+        Verdict::CausesFound => "causes_found",
+        Verdict::NothingFound => "nothing_found",
+        Verdict::Unexplained => "unexplained",
+        Verdict::DataFault => "data_fault",
+    }
+}

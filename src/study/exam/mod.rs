@@ -1,0 +1,187 @@
+//! An exam of the diagnosis: effects are hidden in machines, and it has to find them.
+
+mod case;
+mod machine;
+mod marks;
+mod result;
+mod sheet;
+mod work;
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+pub use case::{Case, Kind};
+pub use machine::Concealed;
+pub use marks::{Hit, Marks};
+pub use result::{ExamResult, Tally};
+
+use super::StudyError;
+use crate::data::Excitation;
+
+/// What is asked in an exam: what a configuration file holds. Paths are seen from that file.
+///
+/// Every combination of a size, a length, a noise and a seed is one case for every hidden
+/// effect of every machine.
+///
+/// # Example
+///
+/// ```
+/// use lacuna::study::Exam;
+///
+/// let exam: Exam = toml::from_str(
+///     "sizes = [0.2, 1.0]\nseeds = 3\nnulls = 2\npairs = 1\n\
+///      [[systems]]\nmodel = 'pendulum.toml'\n\
+///      excitation.filtered_noise = { rms = 0.3, cutoff = 3.0, order = 2 }\n\
+///      [[systems.hidden]]\ninto = 'torque_on_arm'\nof = 'rate'\n\
+///      effect.drag = { coefficient = -0.01 }\n\
+///      [[systems.hidden]]\ninto = 'J'\neffect.parameter = { value = 0.03 }",
+/// )?;
+/// // two effects at two sizes with three seeds, two records with nothing hidden and one pair
+/// // of both sizes with each
+/// assert_eq!(exam.cases()?.len(), 12 + 6 + 6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Exam {
+    /// Machines.
+    pub systems: Vec<Machine>,
+    /// Sizes g of the hidden effects: each makes the residual 1 + g times the noise.
+    #[serde(default = "sizes")]
+    pub sizes: Vec<f64>,
+    /// Samples of the record that is diagnosed.
+    #[serde(default = "samples")]
+    pub samples: Vec<usize>,
+    /// Ratio of output to noise, dB.
+    #[serde(default = "snr_db")]
+    pub snr_db: Vec<f64>,
+    /// Pole of the noise: 0 is white.
+    #[serde(default = "noise_pole")]
+    pub noise_pole: Vec<f64>,
+    /// Share by which every free parameter of the model is off, up or down by lot.
+    #[serde(default = "parameter_error")]
+    pub parameter_error: Vec<f64>,
+    /// Number of seeds.
+    #[serde(default = "one")]
+    pub seeds: u64,
+    /// Whether every effect is hidden by itself.
+    #[serde(default = "yes")]
+    pub singles: bool,
+    /// Whether every effect is hidden by itself and then not looked for.
+    #[serde(default)]
+    pub missing: bool,
+    /// Records with nothing hidden, per machine and seed.
+    #[serde(default)]
+    pub nulls: usize,
+    /// Pairs drawn per machine and seed.
+    #[serde(default)]
+    pub pairs: usize,
+    /// Triples drawn per machine and seed.
+    #[serde(default)]
+    pub triples: usize,
+}
+
+fn sizes() -> Vec<f64> {
+    vec![1.0]
+}
+fn samples() -> Vec<usize> {
+    vec![4000]
+}
+fn snr_db() -> Vec<f64> {
+    vec![20.0]
+}
+fn noise_pole() -> Vec<f64> {
+    vec![0.0]
+}
+fn parameter_error() -> Vec<f64> {
+    vec![0.0]
+}
+fn one() -> u64 {
+    1
+}
+fn yes() -> bool {
+    true
+}
+
+/// A machine that takes part.
+#[derive(Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Machine {
+    /// Its model file.
+    pub model: String,
+    /// s; absent: the model file's own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub sampling_time: Option<f64>,
+    /// What drives every input, with phases or draws of its own.
+    pub excitation: Excitation,
+    /// Other excitations of named inputs.
+    #[serde(default)]
+    pub inputs: BTreeMap<String, Excitation>,
+    /// Constants added to named inputs, in their units.
+    #[serde(default)]
+    pub offset: BTreeMap<String, f64>,
+    /// Samples simulated before each record and left out.
+    #[serde(default)]
+    pub transient: usize,
+    /// What may be hidden in it.
+    pub hidden: Vec<Concealed>,
+}
+
+impl Machine {
+    /// Its name in tables: that of the model file.
+    pub fn name(&self) -> String {
+        let path = std::path::Path::new(&self.model);
+        path.file_stem().map_or_else(|| self.model.clone(), |s| s.to_string_lossy().into_owned())
+    }
+}
+
+impl Exam {
+    /// Checks what can be checked without the files.
+    ///
+    /// # Errors
+    ///
+    /// The first setting that cannot be right.
+    pub fn check(&self) -> Result<(), StudyError> {
+        let positive = [
+            ("sizes", &self.sizes, 0.0, 1e6),
+            ("snr_db", &self.snr_db, -100.0, 300.0),
+            ("noise_pole", &self.noise_pole, -1.0, 1.0),
+            ("parameter_error", &self.parameter_error, -1e-300, 1.0),
+        ];
+        for (key, values, above, below) in positive {
+            if values.is_empty() {
+                return Err(StudyError::setting(key, "empty", "at least one number"));
+            }
+            if let Some(value) = values.iter().find(|v| !(**v > above && **v < below)) {
+                let expected = format!("between {above} and {below}");
+                return Err(StudyError::setting(key, value, &expected));
+            }
+        }
+        if self.samples.is_empty() || self.samples.contains(&0) {
+            return Err(StudyError::setting("samples", "empty or 0", "numbers of samples"));
+        }
+        for (key, empty) in [("systems", self.systems.is_empty()), ("seeds", self.seeds == 0)] {
+            if empty {
+                return Err(StudyError::setting(key, "empty", "at least one"));
+            }
+        }
+        for (i, machine) in self.systems.iter().enumerate() {
+            if self.systems[..i].iter().any(|other| other.name() == machine.name()) {
+                return Err(StudyError::setting("model", machine.name(), "a name of its own"));
+            }
+            let wanted = if self.triples > 0 {
+                3
+            } else if self.pairs > 0 {
+                2
+            } else {
+                0
+            };
+            if machine.hidden.len() < wanted {
+                let found = format!("{} in {}", machine.hidden.len(), machine.name());
+                return Err(StudyError::setting("hidden", found, "enough for pairs and triples"));
+            }
+        }
+        Ok(())
+    }
+}

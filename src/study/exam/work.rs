@@ -1,0 +1,127 @@
+//! Works the cases of an exam off, several at a time.
+
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use super::{Case, Exam, Marks};
+use crate::diagnose::Diagnosis;
+use crate::study::StudyError;
+use crate::study::job::write;
+use crate::system::System;
+use crate::train::Fingerprint;
+use crate::watch::Watch;
+
+impl Exam {
+    /// Tells exams apart that must not be mixed.
+    fn fingerprint(&self, systems: &[System], seed: u64) -> Result<u64, StudyError> {
+        let text = |value: Result<String, serde_json::Error>| {
+            value.map_err(|error| StudyError::merge(Path::new("settings"), error))
+        };
+        let mut print = Fingerprint::new()
+            .bytes(text(serde_json::to_string(self))?.as_bytes())
+            .bytes(&seed.to_le_bytes());
+        for system in systems {
+            print = print.bytes(text(serde_json::to_string(system))?.as_bytes());
+        }
+        Ok(print.finish())
+    }
+
+    /// Works cases off, each with its marks in `folder/marks`; those whose marks are there
+    /// already are not done again. Gives how many are done: fewer than asked for if somebody
+    /// asked to stop.
+    ///
+    /// # Errors
+    ///
+    /// The first error of a case; the others end as well.
+    pub(crate) fn run(
+        &self,
+        systems: &[System],
+        cases: &[Case],
+        threads: usize,
+        seed: u64,
+        folder: &Path,
+        watch: &dyn Watch,
+    ) -> Result<usize, StudyError> {
+        for (machine, system) in self.systems.iter().zip(systems) {
+            machine.check(system)?;
+        }
+        let folder = folder.join("marks");
+        std::fs::create_dir_all(&folder).map_err(|error| StudyError::merge(&folder, error))?;
+        let fingerprint = self.fingerprint(systems, seed)?;
+        let mut open = vec![];
+        for case in cases {
+            let path = folder.join(format!("case{}.json", case.number));
+            if !path.exists() {
+                open.push((case, path));
+            } else if Marks::read(&path)?.fingerprint != fingerprint {
+                return Err(StudyError::merge(&path, "the result of another exam"));
+            }
+        }
+        let known = cases.len() - open.len();
+        let (next, done, failed) = (AtomicUsize::new(0), AtomicUsize::new(known), Mutex::new(None));
+        let labour = || {
+            while let Some((case, path)) = open.get(next.fetch_add(1, Ordering::Relaxed)) {
+                if watch.stopped() {
+                    return;
+                }
+                let marks = self.ask(systems, case, seed, fingerprint);
+                match marks.and_then(|marks| write(path, &marks).map(|()| marks)) {
+                    Ok(marks) => {
+                        let count = done.fetch_add(1, Ordering::Relaxed) + 1;
+                        let doing = format!("{} in {}", marks.hidden.join(" + "), marks.system);
+                        watch.tell(count as f64 / cases.len().max(1) as f64, &doing);
+                    }
+                    Err(error) => {
+                        next.store(open.len(), Ordering::Relaxed);
+                        if let Ok(mut failed) = failed.lock() {
+                            failed.get_or_insert(error);
+                        }
+                    }
+                }
+            }
+        };
+        std::thread::scope(|scope| {
+            for _ in 1..threads.min(open.len()).max(1) {
+                scope.spawn(labour);
+            }
+            labour();
+        });
+        match failed.into_inner() {
+            Ok(Some(error)) => Err(error),
+            _ => Ok(done.into_inner()),
+        }
+    }
+
+    /// One case from the hiding to the marks.
+    fn ask(
+        &self,
+        systems: &[System],
+        case: &Case,
+        seed: u64,
+        fingerprint: u64,
+    ) -> Result<Marks, StudyError> {
+        let machine = &self.systems[case.system];
+        let made = machine.make(&systems[case.system], case, seed)?;
+        let mut diagnosis = Diagnosis::of(&made.baseline);
+        if case.kind == super::Kind::Missing {
+            let hidden =
+                case.hidden.iter().map(|&h| machine.hidden[h].placed.effect.typetag_name());
+            diagnosis = diagnosis.without(&hidden.map(String::from).collect::<Vec<_>>());
+        }
+        let finding = diagnosis.run(std::slice::from_ref(&made.record), None, &())?;
+        Marks::of(case, machine, &made, &finding, fingerprint)
+    }
+}
+
+impl Marks {
+    /// Reads the marks of a case.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read or holds no marks.
+    pub fn read(path: &Path) -> Result<Self, StudyError> {
+        let text = std::fs::read_to_string(path).map_err(|error| StudyError::merge(path, error))?;
+        serde_json::from_str(&text).map_err(|error| StudyError::merge(path, error))
+    }
+}
