@@ -86,6 +86,11 @@ impl Candidate {
         self.linear.is_empty()
     }
 
+    /// Whether it is an instrument's limit that was read off the record: nothing is free in it.
+    pub fn is_known_limit(&self) -> bool {
+        self.effect == "saturation" && self.unknowns() == 0
+    }
+
     /// How many numbers it has free.
     pub fn unknowns(&self) -> usize {
         self.linear.len() + self.refine.len()

@@ -75,6 +75,10 @@ impl Teller<'_, '_> {
                 new
             });
             let runners_up = slot.others.iter().take(4);
+            if cause.is_known_limit() {
+                causes.push(self.clipping(cause, values, share, normal_tail(score)));
+                continue;
+            }
             causes.push(Cause {
                 effect: cause.effect.into(),
                 into: cause.into.clone(),
@@ -93,6 +97,39 @@ impl Teller<'_, '_> {
             });
         }
         Ok(causes)
+    }
+
+    /// Readings that were cut off by the instrument. The extended model has its limits, as a
+    /// saturation of the output, which is the other name for it.
+    fn clipping(&self, limit: &Candidate, values: Vec<Value>, share: f64, p_value: f64) -> Cause {
+        let outputs = &self.problem.base.signals.outputs;
+        let o = outputs.iter().position(|signal| signal.name == limit.into);
+        let at = |y: f64| values.iter().any(|limit| limit.value == y);
+        let rows: Vec<usize> = o.map_or_else(Vec::new, |o| {
+            (0..self.problem.len()).filter(|&k| at(self.problem.y[o][k])).map(|k| k + 1).collect()
+        });
+        let said: Vec<String> = values.iter().map(|v| super::words::magnitude(v, true)).collect();
+        let sentence = format!(
+            "The readings of {} are cut off at {}: {} samples stand there.",
+            limit.into,
+            said.join(" and "),
+            rows.len()
+        );
+        let named = |v: Value| Value { name: "value".into(), ..v };
+        Cause {
+            effect: "clipping".into(),
+            into: limit.into.clone(),
+            of: None,
+            also_into: vec![],
+            also_of: vec![],
+            sentence,
+            parameters: values.into_iter().map(named).collect(),
+            p_value: p_value.max(1e-300),
+            error_removed: share,
+            indistinguishable: vec![alternative(limit, share)],
+            runners_up: vec![],
+            rows: Some(rows),
+        }
     }
 
     /// Numbers of a cause: values of a parameter are the new value, not its change.

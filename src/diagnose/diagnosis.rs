@@ -3,13 +3,14 @@
 use std::time::Instant;
 
 use super::error::DiagnoseError;
+use super::faults::{Fault, flipped, retimed, strike};
 use super::finding::{Cause, Finding};
 use super::library::Allowed;
 use super::prepared::{Prepared, windows};
 use super::score::TestData;
 use super::teller::Teller;
 use crate::data::Record;
-use crate::evaluate::{EvaluateError, Init, Run};
+use crate::evaluate::{EvaluateError, Init, Run, Simulation};
 use crate::statistics::normal_tail;
 use crate::system::System;
 use crate::watch::Watch;
@@ -19,6 +20,17 @@ const FIT: f64 = 0.7;
 /// Shares when the estimation data must serve as test data too.
 const FIT_OF_ALL: f64 = 0.6;
 const TEST_OF_ALL: f64 = 0.2;
+/// A cause in the machine explains as much as a wrong clock if it removes so much less at most.
+const AS_MUCH: f64 = 0.02;
+
+/// Records without the faults that were found in them.
+#[derive(Clone)]
+struct Mended {
+    records: Vec<Record>,
+    test: Option<Record>,
+    faults: Vec<Fault>,
+}
+
 /// Finds what a model's simulation gets wrong on a record, and names it.
 ///
 /// # Example
@@ -115,6 +127,80 @@ impl<'a> Diagnosis<'a> {
     ) -> Result<Finding, DiagnoseError> {
         let started = Instant::now();
         self.check_names()?;
+        for record in records {
+            self.check_baseline(record)?;
+        }
+        let mended = self.mended(records, test)?;
+        let clock = retimed(self.system, &mended.records)?;
+        let mut finding = match &clock {
+            None => self.search(&mended.records, mended.test.as_ref(), self.max_causes, watch)?,
+            Some(fault) => self.clocked(mended.clone(), fault, watch)?,
+        };
+        finding.add(&mended.faults);
+        finding.coarse(records);
+        finding.interrupted = watch.stopped();
+        watch.tell(1.0, "done");
+        finding.seconds = started.elapsed().as_secs_f64();
+        Ok(finding)
+    }
+
+    /// Strikes out what instruments made up, and turns a column of the wrong sign.
+    fn mended(&self, records: &[Record], test: Option<&Record>) -> Result<Mended, EvaluateError> {
+        let (mut all, mut faults, mut before) = (vec![], vec![], 0);
+        for record in records {
+            let run = Simulation::of(self.system, record, Init::Forgotten)?;
+            let (mended, found) = strike(record, &run.outputs, before);
+            before += record.len();
+            all.push(mended);
+            faults.extend(found);
+        }
+        let mut test = match test {
+            Some(record) => {
+                let run = Simulation::of(self.system, record, Init::Forgotten)?;
+                Some(strike(record, &run.outputs, 0).0)
+            }
+            None => None,
+        };
+        if let Some(fault) = flipped(self.system, &all)? {
+            all = all.iter().map(|record| fault.mend(record)).collect();
+            test = test.map(|record| fault.mend(&record));
+            faults.insert(0, fault);
+        }
+        Ok(Mended { records: all, test, faults })
+    }
+
+    /// A record whose clock seems to be wrong: if one cause in the machine explains as much, the
+    /// machine is to blame and the clock is another name of that.
+    fn clocked(
+        &self,
+        mended: Mended,
+        fault: &Fault,
+        watch: &dyn Watch,
+    ) -> Result<Finding, DiagnoseError> {
+        let one = self.search(&mended.records, mended.test.as_ref(), 1, watch)?;
+        if one.causes.len() == 1 && one.gain.error_removed >= fault.removed - AS_MUCH {
+            let test = mended.test.as_ref();
+            let mut finding = self.search(&mended.records, test, self.max_causes, watch)?;
+            if let Some(first) = finding.causes.first_mut() {
+                first.indistinguishable.push(fault.alternative());
+            }
+            return Ok(finding);
+        }
+        let records: Vec<Record> = mended.records.iter().map(|r| fault.mend(r)).collect();
+        let test = mended.test.map(|record| fault.mend(&record));
+        let mut finding = self.search(&records, test.as_ref(), self.max_causes, watch)?;
+        finding.add(std::slice::from_ref(fault));
+        Ok(finding)
+    }
+
+    /// The search for what the model itself gets wrong, on records without faults but spikes.
+    fn search(
+        &self,
+        records: &[Record],
+        test: Option<&Record>,
+        most: usize,
+        watch: &dyn Watch,
+    ) -> Result<Finding, DiagnoseError> {
         let kept: Vec<Record>;
         let (used, test, share) = match test {
             Some(record) => {
@@ -130,16 +216,13 @@ impl<'a> Diagnosis<'a> {
                 (&kept[..], test, FIT_OF_ALL / (1.0 - TEST_OF_ALL))
             }
         };
-        for record in used {
-            self.check_baseline(record)?;
-        }
         let mut whole = Prepared::new(self.system, used, share)?;
         let windows = windows(used);
         let (chosen, other) = match &windows {
-            None => whole.search(&self.allowed, self.max_causes, watch)?,
+            None => whole.search(&self.allowed, most, watch)?,
             Some(windows) => {
                 let mut part = Prepared::new(self.system, windows, share)?;
-                let (chosen, other) = part.search(&self.allowed, self.max_causes, watch)?;
+                let (chosen, other) = part.search(&self.allowed, most, watch)?;
                 watch.tell(0.95, "fitting to all samples");
                 let chosen = whole.finish(&self.allowed, chosen)?;
                 (chosen, other.map(|other| whole.finish(&self.allowed, other)).transpose()?)
@@ -152,11 +235,7 @@ impl<'a> Diagnosis<'a> {
             nominal: &whole.nominal,
             joined: &whole.joined,
         };
-        let mut finding = teller.tell(&whole.start, &chosen, other.as_ref(), &test, used)?;
-        finding.interrupted = watch.stopped();
-        watch.tell(1.0, "done");
-        finding.seconds = started.elapsed().as_secs_f64();
-        Ok(finding)
+        teller.tell(&whole.start, &chosen, other.as_ref(), &test, used)
     }
 
     /// Asks whether records reject the system at all.

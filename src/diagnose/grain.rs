@@ -6,6 +6,9 @@ use super::problem::{Grain, Model, Part, Problem};
 use crate::statistics::deviation;
 use crate::system::Base;
 
+/// Error of coarse steps about a model, over what it leaves, beyond which they are too coarse.
+const TOO_COARSE: f64 = 0.25;
+
 /// Error of rough steps, as a share of the outputs' spread, at which the direction of a
 /// small change is still right.
 const ROUGH: f64 = 0.02;
@@ -52,6 +55,41 @@ impl Problem<'_> {
             }
         }
         self.take_steps(self.base.clone(), rough);
+    }
+
+    /// Whether coarse steps are too coarse for a model: its friction would be steeper than they
+    /// can follow, or they are far off.
+    pub fn are_too_coarse(&self, models: &[&Model]) -> bool {
+        if self.coarse.substeps == self.base.substeps {
+            return false;
+        }
+        let (fine, coarse) = (self.step(Grain::Fine), self.step(Grain::Coarse));
+        models.iter().any(|model| {
+            let blunt = model.added.iter().any(|added| {
+                let mut steep = added.knobs.clone();
+                let knobs = added.cause.card.knobs.iter();
+                knobs.zip(&mut steep).for_each(|(knob, value)| {
+                    if knob.name == "width" {
+                        *value *= 0.9;
+                    }
+                });
+                let as_fine = added.cause.clipped(&steep, fine);
+                as_fine != added.cause.clipped(&steep, coarse)
+            });
+            let far = || {
+                let own = self.simulate(model, Grain::Fine);
+                own.zip(self.simulate(model, Grain::Coarse)).is_some_and(|(own, coarse)| {
+                    self.distance(&own, &coarse) > TOO_COARSE * self.distance(&coarse, &self.y)
+                })
+            };
+            blunt || far()
+        })
+    }
+
+    /// Takes the integrator's own steps from now on.
+    pub fn take_own_steps(&mut self) {
+        self.correction = None;
+        self.take_steps(self.base.clone(), None);
     }
 
     /// Sets what coarse and rough steps are.

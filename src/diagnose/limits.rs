@@ -32,7 +32,10 @@ fn upper(values: &[f64]) -> Option<f64> {
     let often = count(largest);
     // a series that rests at its largest value most of the time has no limit but a level
     let rests = 2 * often > values.len();
-    (often >= COUNT && longest >= RUN && often >= TIMES * count(next) && !rests).then_some(largest)
+    // on a fine scale, no value but a limit is met time and again
+    let fine = count(next) == 1;
+    (often >= COUNT && (fine || longest >= RUN) && often >= TIMES * count(next) && !rests)
+        .then_some(largest)
 }
 
 /// The limits of an output as a cause that is known before any search; `None` without any.

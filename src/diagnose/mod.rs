@@ -6,6 +6,7 @@ mod curves;
 mod dependence;
 mod diagnosis;
 mod error;
+mod faults;
 mod finding;
 mod floor;
 mod grain;

@@ -12,7 +12,7 @@ use super::pairs::{shortlist, stayed};
 use super::problem::{Grain, Model, Part, Problem};
 use super::screen::Screen;
 use super::sets::headed_by;
-use super::stage::{REFITTED, Trial, stage};
+use super::stage::{REFITTED, Trial, stage, trial};
 use crate::statistics::strongest;
 use crate::statistics::whiteness;
 use crate::watch::Watch;
@@ -21,8 +21,13 @@ use crate::watch::Watch;
 const ACCEPT: f64 = 4.0;
 /// Score that causes must pass when the baseline's residual does not depend on the inputs.
 const ACCEPT_INDEPENDENT: f64 = 7.0;
+/// Score of whiteness below which a residual has no memory that could pass for a cause.
+const WHITE: f64 = 3.0;
 /// A mean square cut to less than this counts as a strong improvement.
 const STRONG: f64 = 0.6;
+/// Trials whose steps are checked, and those that are judged again with finer ones.
+const LEADING: usize = 4;
+const JUDGED_AGAIN: usize = 8;
 /// Dependence on the inputs at which two causes are looked for where one alone is not enough.
 const DEPENDS: f64 = 4.0;
 
@@ -105,11 +110,23 @@ impl<'a, 'b> Search<'a, 'b> {
         (p.mean_square(y, Part::Fit), p.mean_square(y, Part::Choose))
     }
 
+    /// Score at which a cause is accepted that leaves `b` unexplained. Slow noise can pass for a
+    /// cause where the first residual did not depend on the inputs; white noise cannot.
+    fn bar(&self, b: &[Vec<f64>]) -> f64 {
+        if self.accept > ACCEPT && self.is_white(b) { ACCEPT } else { self.accept }
+    }
+
+    fn is_white(&self, y: &[Vec<f64>]) -> bool {
+        let r = self.problem.residual(y, Part::All);
+        let n = r.len() / self.problem.y.len();
+        r.chunks(n).all(|r| whiteness(r).abs() < WHITE)
+    }
+
     /// Whether going from `a` to `b` is an improvement worth a cause.
     pub(super) fn accepts(&self, a: &[Vec<f64>], b: &[Vec<f64>], weak: bool) -> bool {
         let score = self.score(a, b) - f64::from(u8::from(weak));
         let ((fit_a, held_a), (fit_b, held_b)) = (self.mean_squares(a), self.mean_squares(b));
-        score >= self.accept || score > 1.0 && held_b < STRONG * held_a && fit_b < STRONG * fit_a
+        score >= self.bar(b) || score > 1.0 && held_b < STRONG * held_a && fit_b < STRONG * fit_a
     }
 
     /// All candidates for what a model leaves.
@@ -123,6 +140,28 @@ impl<'a, 'b> Search<'a, 'b> {
             None => vec![],
         };
         library(self.problem, self.nominal, model, lines, self.allowed)
+    }
+
+    /// Where the leading trials move faster than coarse steps can follow: judges them again with
+    /// the integrator's own, which the search then keeps. Whether it did.
+    fn refine(&mut self, trials: &mut Vec<Trial>) -> bool {
+        let leading: Vec<&Model> = trials.iter().take(LEADING).map(|t| &t.model).collect();
+        if !self.problem.are_too_coarse(&leading) {
+            return false;
+        }
+        self.problem.take_own_steps();
+        trials.truncate(JUDGED_AGAIN);
+        let models: Vec<Model> = trials.iter().map(|t| t.model.clone()).collect();
+        let fitted = refit(self.problem, &self.nuisance, &models, Refit::search());
+        let again = trials.drain(..).zip(fitted).filter_map(|(old, fitted)| {
+            let model = fitted?.model;
+            let y = self.problem.simulate(&model, Grain::Coarse);
+            trial(self.problem, &old.cause, model, y, old.weak)
+        });
+        let mut again: Vec<Trial> = again.collect();
+        again.sort_by(|a, b| a.held.total_cmp(&b.held));
+        *trials = again;
+        true
     }
 
     /// Flags spikes against a model.
@@ -180,7 +219,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 full = false;
                 break;
             }
-            let before = self.present(&model)?;
+            let mut before = self.present(&model)?;
             if number > 0 && self.is_noise(&before) {
                 full = false;
                 break;
@@ -194,6 +233,9 @@ impl<'a, 'b> Search<'a, 'b> {
             };
             self.tell(at + 0.5 * step, "comparing explanations");
             let mut trials = found.trials;
+            if self.refine(&mut trials) {
+                before = self.present(&model)?;
+            }
             if number == 0 {
                 first = Some(found.screen);
             } else {
@@ -268,10 +310,7 @@ impl<'a, 'b> Search<'a, 'b> {
 
     /// Whether a model leaves nothing but white noise, so that nothing more can be found.
     fn is_noise(&self, y: &[Vec<f64>]) -> bool {
-        let r = self.problem.residual(y, Part::All);
-        let n = r.len() / self.problem.y.len();
-        r.chunks(n).all(|r| whiteness(r).abs() < 2.5)
-            && dependence(self.problem, self.nominal, y) < 2.0
+        self.is_white(y) && dependence(self.problem, self.nominal, y) < 2.0
     }
 
     /// Whether one more cause leaves nothing but noise, so that pairs need not be looked at.

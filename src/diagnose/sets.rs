@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::candidate::Candidate;
 use super::problem::{Model, Part};
 use super::search::{Search, Slot};
-use super::stage::{Trial, stage, trial};
+use super::stage::{REFITTED, Trial, stage, trial};
 
 /// Score below which one model is as good as another.
 pub(super) const AS_GOOD: f64 = 2.0;
@@ -85,9 +85,15 @@ impl Search<'_, '_> {
             let without = self.fitted(model.without(0));
             let Slot { set, others, score } = slots.remove(0);
             let present = model.added[0].clone();
-            let members: Vec<Arc<Candidate>> = set.iter().map(|(cause, _)| cause.clone()).collect();
-            let found =
-                stage(self.problem, &self.nuisance, &without, &members, false, 2 * members.len());
+            // a single cause is asked for against all others, one of several against its set,
+            // which the swaps have brought up to date
+            let alone = model.added.len() == 1;
+            let members: Vec<Arc<Candidate>> = match alone {
+                true => self.candidates(&without),
+                false => set.iter().map(|(cause, _)| cause.clone()).collect(),
+            };
+            let most = if alone { REFITTED } else { 2 * members.len() };
+            let found = stage(self.problem, &self.nuisance, &without, &members, false, most);
             let mut trials: Vec<Trial> = found.map(|found| found.trials).unwrap_or_default();
             let joined = self.fitted(without.with(&present.cause, present.knobs.clone()));
             let y = self.present(&joined);

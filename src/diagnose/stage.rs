@@ -19,6 +19,8 @@ const LARGE_SHARE: f64 = 0.2;
 /// to be trusted and magnitudes are scanned.
 const SCAN_BELOW: f64 = 0.5;
 const SCAN_FAR: f64 = 0.2;
+/// Causes with one unknown that are refitted whatever stands before them.
+const PLAIN: usize = 4;
 /// Relative difference of two screens' figures below which they are those of twins.
 const TWIN: f64 = 1e-3;
 /// Twins that are refitted beside what was chosen, at most.
@@ -108,6 +110,13 @@ pub(crate) fn stage(
         }
     }
     chosen.truncate(most);
+    // flexible shapes crowd the front where a plain one is too far off to first order
+    let plain = screened.scored.iter().filter(|s| passes(s) && s.cause.unknowns() == 1);
+    for scored in plain.take(PLAIN) {
+        if !chosen.iter().any(|(c, _)| c.cause.same_cause(&scored.cause)) {
+            chosen.push((scored.clone(), None));
+        }
+    }
     // an exact twin of what was chosen belongs to the same set, whatever came between
     let twins: Vec<Scored> = screened
         .scored

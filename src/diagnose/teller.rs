@@ -52,7 +52,7 @@ impl Teller<'_, '_> {
         let y_before = y_before.unwrap_or_else(|| chosen.y.clone());
         let mut causes = self.causes(chosen, test, &before, &after, &floors)?;
         causes.extend(self.moved(chosen, test, &before, &after, &floors)?);
-        let structural = causes.len();
+        let structural = causes.iter().filter(|cause| cause.rows.is_none()).count();
         causes.extend(self.outliers(chosen));
         let verdict = match (structural, causes.len()) {
             (0, 0) if chosen.dependence > DEPENDS => Verdict::Unexplained,

@@ -1,0 +1,204 @@
+//! Samples that the instrument made up: dropouts, and readings that stand still.
+
+use super::{Fault, FaultKind};
+use crate::data::Record;
+use crate::statistics::{deviation, median};
+
+/// Jumps beyond this many robust standard deviations of a usual step are falls.
+const BEYOND: f64 = 6.0;
+/// Falls to the same value that chance does not make.
+const FALLS: usize = 3;
+/// Share of different values beyond which a scale is fine.
+const FINE: f64 = 0.9;
+/// Different values that a reading has at least, to be judged by equal ones.
+const VALUES: usize = 30;
+/// Equal readings in a row that are one that stands still, at least.
+const STILL: usize = 8;
+/// How much longer than usual such a stretch is.
+const LONGER: usize = 6;
+/// Share of a record beyond which equal readings are its nature, not a fault.
+const NATURE: f64 = 0.3;
+/// The machine moves by this share of its standard deviation while a reading stands still.
+const MOVES: f64 = 0.3;
+
+/// A stretch of equal values.
+#[derive(Debug, Clone, Copy)]
+struct Stretch {
+    from: usize,
+    to: usize,
+    value: f64,
+}
+
+fn stretches(y: &[f64]) -> Vec<Stretch> {
+    let mut all: Vec<Stretch> = vec![];
+    for (k, &value) in y.iter().enumerate() {
+        match all.last_mut() {
+            Some(last) if last.value == value && last.to == k => last.to = k + 1,
+            _ if value.is_finite() => all.push(Stretch { from: k, to: k + 1, value }),
+            _ => {}
+        }
+    }
+    all
+}
+
+/// Median size of a step between samples, as a standard deviation.
+fn usual_step(y: &[f64]) -> f64 {
+    let steps: Vec<f64> = y.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 0.0).collect();
+    1.4826 * median(&steps)
+}
+
+/// Value and samples of dropouts.
+fn dropouts(y: &[f64]) -> Option<(f64, Vec<usize>)> {
+    let (all, step) = (stretches(y), usual_step(y));
+    let fell = |s: &Stretch| {
+        let far = |k: Option<usize>| {
+            k.and_then(|k| y.get(k)).is_none_or(|v| !((v - s.value).abs() <= BEYOND * step))
+        };
+        let inside = s.from > 0 || s.to < y.len();
+        inside && far(s.from.checked_sub(1)) && far(Some(s.to))
+    };
+    // a fine scale does not meet a value inside its range time and again by chance
+    let fine = different(y) as f64 > FINE * y.len() as f64;
+    let (low, high) = range(y);
+    let counts = |s: &&Stretch| fell(s) || fine && s.value > low && s.value < high;
+    let mut fallen: Vec<&Stretch> = all.iter().filter(counts).collect();
+    fallen.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let best = fallen
+        .chunk_by(|a, b| a.value == b.value)
+        .filter(|same| same.len() >= FALLS)
+        .max_by_key(|same| same.len())?;
+    let mut rows: Vec<usize> = best.iter().flat_map(|s| s.from..s.to).collect();
+    rows.sort_unstable();
+    (rows.len() < (NATURE * y.len() as f64) as usize).then_some((best[0].value, rows))
+}
+
+fn range(y: &[f64]) -> (f64, f64) {
+    let known = y.iter().filter(|v| v.is_finite());
+    known.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &v| (l.min(v), h.max(v)))
+}
+
+/// Value and samples of the stretches in which a reading stands still while the machine, as
+/// simulated, moves.
+fn still(y: &[f64], simulated: &[f64]) -> Vec<(f64, Vec<usize>)> {
+    let all = stretches(y);
+    let mut lengths: Vec<usize> = all.iter().map(|s| s.to - s.from).collect();
+    lengths.sort_unstable();
+    let usual = lengths.get(lengths.len() * 95 / 100).copied().unwrap_or(1);
+    let (low, high) = range(y);
+    let moves = MOVES * deviation(simulated);
+    let found: Vec<(f64, Vec<usize>)> = all
+        .iter()
+        .filter(|s| s.to - s.from >= STILL.max(LONGER * usual))
+        // at its limits a reading is cut off, not stuck
+        .filter(|s| s.value > low && s.value < high)
+        .filter(|s| {
+            let (a, b) = range(&simulated[s.from..s.to]);
+            b - a > moves
+        })
+        .map(|s| (s.value, (s.from..s.to).collect()))
+        .collect();
+    let count: usize = found.iter().map(|(_, rows)| rows.len()).sum();
+    if count as f64 > NATURE * y.len() as f64 { vec![] } else { found }
+}
+
+/// Strikes out what the instruments made up: these samples become missing values. `simulated`
+/// is what the baseline makes of the record, `before` the number of samples in the records
+/// that came earlier.
+pub(crate) fn strike(
+    record: &Record,
+    simulated: &[(String, Vec<f64>)],
+    before: usize,
+) -> (Record, Vec<Fault>) {
+    let (mut mended, mut faults) = (record.clone(), vec![]);
+    for signal in &mut mended.outputs {
+        if different(&signal.values) < VALUES {
+            continue;
+        }
+        let mut found = vec![];
+        if let Some((value, rows)) = dropouts(&signal.values) {
+            rows.iter().for_each(|&k| signal.values[k] = f64::NAN);
+            found.push((FaultKind::Dropout(value), rows));
+        }
+        let simulated = simulated.iter().find(|(name, _)| *name == signal.name);
+        for (value, rows) in simulated.map_or(vec![], |(_, of)| still(&signal.values, of)) {
+            rows.iter().for_each(|&k| signal.values[k] = f64::NAN);
+            found.push((FaultKind::Stuck(value), rows));
+        }
+        faults.extend(found.into_iter().map(|(kind, rows)| Fault {
+            kind,
+            into: signal.name.clone(),
+            unit: signal.unit.clone(),
+            rows: rows.into_iter().map(|k| before + k).collect(),
+            removed: 0.0,
+            or_in: vec![],
+        }));
+    }
+    (mended, faults)
+}
+
+/// How many different values a series has.
+fn different(values: &[f64]) -> usize {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    sorted.len()
+}
+
+/// Step of a converter that rounds to less than `VALUES` or so steps per standard deviation:
+/// all values are whole multiples of it.
+pub(crate) fn converter_step(y: &[f64]) -> Option<f64> {
+    let mut values: Vec<f64> = y.iter().copied().filter(|v| v.is_finite()).collect();
+    values.sort_by(f64::total_cmp);
+    let steps = values.windows(2).map(|w| w[1] - w[0]);
+    let spread = deviation(y);
+    // neighbours that rounding of the file's decimals makes differ are the same value
+    let step = steps.filter(|d| *d > 1e-9 * spread).fold(f64::INFINITY, f64::min);
+    let whole = |v: &f64| {
+        let of = (v - values[0]) / step;
+        (of - of.round()).abs() < 1e-3
+    };
+    (step.is_finite() && step > 0.0 && values.len() > VALUES && values.iter().all(whole))
+        .then_some(step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Random;
+
+    fn noisy(n: usize) -> (Vec<f64>, Vec<f64>) {
+        let mut random = Random::new(1);
+        let clean: Vec<f64> = (0..n).map(|k| 2.0 + (k as f64 * 0.05).sin()).collect();
+        let y = clean.iter().map(|y| y + 0.05 * random.normal()).collect();
+        (clean, y)
+    }
+
+    #[test]
+    fn samples_that_fell_to_a_value() {
+        let (_, mut y) = noisy(1000);
+        assert_eq!(dropouts(&y), None);
+        let rows = [100, 101, 300, 480, 481, 482, 777];
+        rows.iter().for_each(|&k| y[k] = 0.0);
+        assert_eq!(dropouts(&y), Some((0.0, rows.to_vec())));
+    }
+
+    #[test]
+    fn a_reading_that_stands_still_while_the_machine_moves() {
+        let (clean, mut y) = noisy(1000);
+        assert!(still(&y, &clean).is_empty());
+        let held = y[400];
+        y[400..430].fill(held);
+        assert_eq!(still(&y, &clean), [(held, (400..430).collect::<Vec<_>>())]);
+        // a machine at rest stands still as well
+        assert!(still(&y, &vec![2.0; 1000]).is_empty());
+    }
+
+    #[test]
+    fn a_coarse_converter() {
+        let (_, y) = noisy(1000);
+        assert_eq!(converter_step(&y), None);
+        let coarse: Vec<f64> = y.iter().map(|y| (y / 0.25).round() * 0.25).collect();
+        let step = converter_step(&coarse).unwrap();
+        assert!((step - 0.25).abs() < 1e-12, "{step}");
+    }
+}
