@@ -7,6 +7,7 @@ use serde_json::Value;
 
 mod cli {
     mod calls;
+    mod linear;
     mod lists;
     mod model_files;
     mod pipes;

@@ -104,6 +104,10 @@ fn dry_friction_is_named_and_the_commands_do_what_they_say() {
     let names: Vec<&Value> =
         fitted["parameters"].as_array().unwrap().iter().map(|p| &p["name"]).collect();
     assert_eq!(names, ["J", "c"], "what is fixed stays");
+    let line =
+        "lacuna estimate --lti --inputs torque --outputs angle --data monday.csv --out linear.toml";
+    let (status, linear) = run(&folder, line);
+    assert_eq!((status, &linear["order"]), (Some(0), &Value::from(2)), "{linear:#}");
     let (status, simulated) =
         run(&folder, "lacuna simulate --model fitted.toml --data tuesday.csv --out simulated.csv");
     assert_eq!(status, Some(0), "{simulated:#}");

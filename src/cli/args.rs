@@ -1,8 +1,12 @@
 //! What can be typed.
 
+mod estimate;
+
 use std::path::PathBuf;
 
 use clap::{Args as Arguments, Parser, Subcommand};
+
+pub use estimate::Estimate;
 
 /// Shows what a model's simulation gets wrong, names the cause, extends the model and
 /// measures the gain.
@@ -59,9 +63,16 @@ pub enum Command {
         after_help = "Example:\n  lacuna simulate --model press.toml --data test.csv --out simulated.csv"
     )]
     Simulate(Simulate),
-    /// Fits the free parameters of a model to records
+    /// Fits the free parameters of a model to records, or makes a linear model of records alone
     #[command(
-        after_help = "Example:\n  lacuna estimate --model press.toml --data est.csv --out fitted.toml"
+        after_help = "Examples:\n  lacuna estimate --model press.toml --data est.csv --out fitted.toml\n  \
+        lacuna estimate --lti --data est.csv --out linear.toml\n  \
+        lacuna estimate --lti 4 --inputs force --outputs position --data est.csv --out linear.toml\n\n\
+        --lti makes a discrete linear model with the records' names, units and sampling time: poles\n\
+        from the records' correlations (a subspace method), everything refined by simulation error.\n\
+        Without --inputs and --outputs, the columns u, u1.. and y, y1.. are taken. Offsets and direct\n\
+        terms within three standard errors of 0 are left out. An offset belongs to the outputs:\n\
+        y = C x + D u + offset."
     )]
     Estimate(Estimate),
     /// Trains a network beside a model, and its encoder, on records
@@ -166,18 +177,6 @@ pub struct Simulate {
     /// the model's `initial` [default: until the start is forgotten, at most 10 %]
     #[arg(long, value_name = "N")]
     pub init: Option<usize>,
-}
-
-#[derive(Debug, Clone, Arguments)]
-pub struct Estimate {
-    #[command(flatten)]
-    pub on: ModelAndData,
-    /// Model file to write
-    #[arg(long, value_name = "FILE")]
-    pub out: PathBuf,
-    /// Parameters that are right
-    #[arg(long, value_name = "PARAMETER", value_delimiter = ',', num_args = 1..)]
-    pub fix: Vec<String>,
 }
 
 #[derive(Debug, Clone, Arguments)]

@@ -12,14 +12,11 @@ use crate::estimate::{Estimated, estimate_with};
 use crate::file::save;
 
 pub fn run(args: &Args, seed: u64, look: &Look) -> Result<u8, Failure> {
-    let (system, want) = input::model(&args.on.model)?;
+    let Some(model) = &args.model else { return super::linear::run(args, look) };
+    let (system, want) = input::model(model)?;
     input::writable(&args.out)?;
-    let records: Vec<Record> = args
-        .on
-        .data
-        .iter()
-        .map(|path| input::record(path, &want, look))
-        .collect::<Result<_, _>>()?;
+    let records: Vec<Record> =
+        args.data.iter().map(|path| input::record(path, &want, look)).collect::<Result<_, _>>()?;
     look.hear_interrupts()?;
     let estimate = estimate_with(&system, &records, &args.fix, seed, look)?;
     look.clear();

@@ -7,6 +7,7 @@ use serde_json::json;
 use super::look::{Look, print};
 use crate::data::DataError;
 use crate::diagnose::DiagnoseError;
+use crate::estimate::LinearError;
 use crate::evaluate::EvaluateError;
 use crate::fault::{Explain, Kind, Place};
 use crate::file::FileError;
@@ -36,6 +37,18 @@ impl Failure {
             place: Place::default(),
             hint: None,
         }
+    }
+
+    /// Something handed in is wrong.
+    pub fn input(message: String, place: Place, hint: String) -> Self {
+        let pretty = format!("{message}\n  try: {hint}");
+        Self { kind: Kind::Input, message, pretty, place, hint: Some(hint) }
+    }
+
+    /// A typed error in other words: what to try differs by command.
+    pub fn with_hint(error: &dyn Explain, hint: String) -> Self {
+        let pretty = format!("{error}\n  try: {hint}");
+        Self { hint: Some(hint), pretty, ..Self::told(error) }
     }
 
     fn told(error: &dyn Explain) -> Self {
@@ -117,4 +130,13 @@ macro_rules! explained {
     )*};
 }
 
-explained!(DataError, EvaluateError, SystemError, DiagnoseError, LfrError, TrainError, StudyError);
+explained!(
+    DataError,
+    EvaluateError,
+    LinearError,
+    SystemError,
+    DiagnoseError,
+    LfrError,
+    TrainError,
+    StudyError
+);

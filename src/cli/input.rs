@@ -56,7 +56,8 @@ pub fn record_to_simulate(path: &Path, want: &Want, look: &Look) -> Result<Recor
     Ok(record)
 }
 
-fn tell(path: &Path, remarks: &[Remark], look: &Look) {
+/// Says what was noticed in a record.
+pub fn tell(path: &Path, remarks: &[Remark], look: &Look) {
     for remark in remarks {
         look.say(&format!("{}: {remark}", path.display()));
     }

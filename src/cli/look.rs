@@ -66,6 +66,13 @@ impl Look {
         }
     }
 
+    /// What only those want to know who ask for more text.
+    pub fn detail(&self, text: &str) {
+        if self.verbose {
+            self.say(text);
+        }
+    }
+
     /// The sentence that matters.
     pub fn headline(&self, text: &str) {
         if self.lively { self.result(&format!("\x1b[1m{text}\x1b[0m")) } else { self.result(text) }

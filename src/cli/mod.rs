@@ -14,6 +14,7 @@ mod failure;
 mod fit;
 mod generate;
 mod input;
+mod linear;
 mod list;
 mod look;
 mod simulate;

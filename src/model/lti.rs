@@ -1,11 +1,16 @@
-//! Linear time-invariant models: x' = A x + B u, y = C x + D u.
+//! Linear time-invariant models: x' = A x + B u, y = C x + D u + offset.
+
+mod named;
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
 use super::law::Matrices;
-use super::{At, Fault, Parameter, Physics, Signal, Signals, State};
+use super::{At, Fault, Parameter, Physics, Signals, State};
 use crate::real::Real;
+
+pub use named::Named;
+use named::names;
 
 /// Whether the matrices give derivatives or next states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -16,41 +21,6 @@ pub enum LtiTime {
     Discrete,
     /// dx/dt = A x + B u, discretised exactly.
     Continuous,
-}
-
-/// A name, or a name with a unit and an initial value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
-pub enum Named {
-    /// Only a name.
-    Name(String),
-    /// With unit and, for states, the initial value.
-    Full {
-        /// Name.
-        name: String,
-        /// Unit.
-        #[serde(default, skip_serializing_if = "String::is_empty")]
-        unit: String,
-        /// Value at the first sample (states only).
-        #[serde(default, skip_serializing_if = "Option::is_none")]
-        initial: Option<f64>,
-    },
-}
-
-impl Named {
-    fn signal(&self) -> Signal {
-        match self {
-            Self::Name(name) => Signal::new(name, ""),
-            Self::Full { name, unit, .. } => Signal::new(name, unit),
-        }
-    }
-
-    fn initial(&self) -> f64 {
-        match self {
-            Self::Full { initial: Some(value), .. } => *value,
-            _ => 0.0,
-        }
-    }
 }
 
 /// A linear time-invariant model in state-space form.
@@ -72,6 +42,10 @@ pub struct Lti {
     /// Inputs to outputs; zero if absent.
     #[serde(rename = "D", default, skip_serializing_if = "Vec::is_empty")]
     pub d: Vec<Vec<f64>>,
+    /// Constant part of each output, where the model holds about a point other than 0; zero if
+    /// absent.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub offset: Vec<f64>,
     /// Innovations to states.
     #[serde(rename = "K", default, skip_serializing_if = "Vec::is_empty")]
     pub k: Vec<Vec<f64>>,
@@ -92,17 +66,6 @@ pub struct Lti {
     pub fixed: Vec<String>,
 }
 
-/// Names given, or made from a letter and a number.
-fn names(given: &[Named], letter: &str, count: usize, always_numbered: bool) -> Vec<Signal> {
-    if !given.is_empty() {
-        return given.iter().map(Named::signal).collect();
-    }
-    if count == 1 && !always_numbered {
-        return vec![Signal::new(letter, "")];
-    }
-    (1..=count).map(|i| Signal::new(&format!("{letter}{i}"), "")).collect()
-}
-
 impl Lti {
     /// Numbers of states, inputs, outputs.
     pub fn dimensions(&self) -> (usize, usize, usize) {
@@ -115,7 +78,7 @@ impl Lti {
     }
 
     /// Entry (table, row, column) of every parameter, in order: all that are neither 0 nor
-    /// 1, which are taken as structure.
+    /// 1, which are taken as structure. Offsets that are not 0 come last, as table 4.
     fn entries(&self) -> Vec<(usize, usize, usize)> {
         let mut entries = vec![];
         for (t, (_, table, ..)) in self.tables().iter().enumerate() {
@@ -127,20 +90,27 @@ impl Lti {
                 }
             }
         }
+        let offsets = self.offset.iter().enumerate().filter(|(_, value)| **value != 0.0);
+        entries.extend(offsets.map(|(i, _)| (4, i, 0)));
         entries
     }
 
-    /// The four matrices with the parameters `theta` put in.
-    fn filled(&self, theta: &[f64]) -> [DMatrix<f64>; 4] {
+    /// The four matrices and the offset with the parameters `theta` put in.
+    fn filled(&self, theta: &[f64]) -> ([DMatrix<f64>; 4], DVector<f64>) {
         let mut filled = self.tables().map(|(_, table, rows, columns)| {
             DMatrix::from_fn(rows, columns, |i, j| {
                 table.get(i).and_then(|row| row.get(j)).copied().unwrap_or(0.0)
             })
         });
+        let count = self.c.len();
+        let mut offset = DVector::from_fn(count, |i, _| self.offset.get(i).copied().unwrap_or(0.0));
         for ((t, i, j), &value) in self.entries().into_iter().zip(theta) {
-            filled[t][(i, j)] = value;
+            match filled.get_mut(t) {
+                Some(table) => table[(i, j)] = value,
+                None => offset[i] = value,
+            }
         }
-        filled
+        (filled, offset)
     }
 }
 
@@ -166,7 +136,12 @@ impl Physics for Lti {
             .entries()
             .into_iter()
             .map(|(t, i, j)| {
-                let (letter, table, rows, columns) = tables[t];
+                let Some(&(letter, table, rows, columns)) = tables.get(t) else {
+                    let name = if ny == 1 { "offset".into() } else { format!("offset{}", i + 1) };
+                    let fixed = self.fixed.contains(&name);
+                    let unit = signals.outputs.get(i).map_or("", |output| output.unit.as_str());
+                    return Parameter::new(name, self.offset[i], unit).fixed(fixed);
+                };
                 let name = if rows.max(columns) > 9 {
                     format!("{letter}{}_{}", i + 1, j + 1)
                 } else {
@@ -209,6 +184,13 @@ impl Physics for Lti {
                 }
             }
         }
+        if !self.offset.is_empty() && self.offset.len() != ny {
+            let found = format!("{} numbers", self.offset.len());
+            faults.push(Fault::new("offset", found, format!("{ny}, as `C` has rows")));
+        }
+        for (i, value) in self.offset.iter().enumerate().filter(|(_, v)| !v.is_finite()) {
+            faults.push(Fault::new(format!("offset[{i}]"), value, "a finite number"));
+        }
         for (key, given, count) in [
             ("inputs", &self.inputs, nu),
             ("states", &self.states, n),
@@ -230,6 +212,14 @@ impl Physics for Lti {
     #[inline(always)]
     fn output<R: Real>(&self, at: &At<R>, y: &mut [R]) {
         self.multiply(at, y, [2, 3]);
+        let given = self.offset.iter().filter(|v| **v != 0.0).count();
+        let mut next = at.theta.len() - given;
+        for (y, &offset) in y.iter_mut().zip(&self.offset) {
+            if offset != 0.0 {
+                *y += at.theta[next];
+                next += 1;
+            }
+        }
     }
 
     fn key(&self, parameter: &str) -> String {
@@ -238,22 +228,17 @@ impl Physics for Lti {
         let at = names.iter().position(|p| p.name == parameter);
         at.and_then(|at| entries.get(at)).map_or_else(
             || parameter.to_string(),
-            |&(t, i, j)| format!("{}.{i}.{j}", ["A", "B", "C", "D"][t]),
+            |&(t, i, j)| match ["A", "B", "C", "D"].get(t) {
+                Some(letter) => format!("{letter}.{i}.{j}"),
+                None => format!("offset.{i}"),
+            },
         )
     }
 
     fn matrices(&self, theta: &[f64]) -> Option<Matrices> {
-        let (n, _, ny) = self.dimensions();
-        let [a, b, c, d] = self.filled(theta);
-        Some(Matrices {
-            a,
-            b,
-            g: DMatrix::identity(n, n),
-            f: DVector::zeros(n),
-            c,
-            d,
-            h: DVector::zeros(ny),
-        })
+        let n = self.dimensions().0;
+        let ([a, b, c, d], h) = self.filled(theta);
+        Some(Matrices { a, b, g: DMatrix::identity(n, n), f: DVector::zeros(n), c, d, h })
     }
 
     fn innovation_gain(&self) -> Option<DMatrix<f64>> {
@@ -293,5 +278,5 @@ impl Lti {
     }
 }
 
-crate::register!(StateSpaceModel for Lti, "lti", "a linear state-space model: A, B, C, D, K",
-    "A = [[0.9, 0.1], [-0.2, 0.8]]\nB = [[0.0], [0.5]]\nC = [[1.0, 0.0]]");
+crate::register!(StateSpaceModel for Lti, "lti", "a linear state-space model: A, B, C, D, offset, K",
+    "A = [[0.9, 0.1], [-0.2, 0.8]]\nB = [[0.0], [0.5]]\nC = [[1.0, 0.0]]\noffset = [0.3]");

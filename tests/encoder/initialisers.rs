@@ -14,6 +14,7 @@ fn lti(k: bool) -> Lti {
         b: vec![vec![0.0, 1.0], vec![1.0, 0.0], vec![0.5, -0.5]],
         c: vec![vec![1.0, 0.0, 0.2], vec![0.0, 1.0, 0.0]],
         d: vec![vec![0.1, 0.0], vec![0.0, 0.0]],
+        offset: vec![],
         k: if k { vec![vec![0.3, 0.1], vec![0.0, 0.3], vec![0.1, 0.0]] } else { vec![] },
         time: LtiTime::Discrete,
         inputs: vec![],
