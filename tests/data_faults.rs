@@ -3,7 +3,7 @@
 mod exam;
 
 use exam::plants::{HEATER, MSD, PENDULUM};
-use exam::{Conditions, Hidden, Plant, USUAL, names, placed};
+use exam::{Conditions, Plant, USUAL, hidden, names};
 use lacuna::data::Record;
 use lacuna::diagnose::{Cause, Diagnosis, Finding, Verdict};
 
@@ -118,15 +118,9 @@ fn another_sampling_time_than_stated() {
 
 #[test]
 fn a_cause_behind_faults_of_the_data() {
-    let friction = Hidden {
-        effect: "coulomb_friction",
-        into: "torque_on_arm",
-        of: Some("rate"),
-        table: |s| {
-            let table = format!("coulomb_friction = {{ level = {:?}, width = 0.02 }}", -0.02 * s);
-            placed("torque_on_arm", Some("rate"), &table)
-        },
-    };
+    let friction = hidden!("coulomb_friction", "torque_on_arm", Some("rate"), |s| {
+        format!("{{ level = {:?}, width = 0.02 }}", -0.02 * s)
+    });
     let (_, mut record) = PENDULUM.guilty(&[&friction], Conditions { seed: 8, g: 2.0, ..USUAL });
     for k in [100, 101, 500, 900, 1300, 1301, 2200] {
         record.outputs[0].values[k] = -9.0;

@@ -4,38 +4,16 @@
 mod exam;
 
 use exam::plants::{CIRCUIT, HEATER, MSD, PENDULUM, TANKS};
-use exam::{Conditions, Hidden, Plant, USUAL, median, names, placed};
+use exam::{Conditions, Hidden, Plant, USUAL, coefficient, hidden, median, names, value};
 use lacuna::diagnose::Verdict;
-
-macro_rules! hidden {
-    ($effect:literal, $into:literal, $of:expr, $table:expr) => {
-        Hidden {
-            effect: $effect,
-            into: $into,
-            of: $of,
-            table: |s: f64| {
-                let table: fn(f64) -> String = $table;
-                placed($into, $of, &format!("{} = {}", $effect, table(s)))
-            },
-        }
-    };
-}
-
-fn scaled(value: f64) -> String {
-    format!("{{ value = {value:?} }}")
-}
-
-fn coefficient(value: f64) -> String {
-    format!("{{ coefficient = {value:?} }}")
-}
 
 fn effects() -> Vec<Hidden> {
     vec![
-        hidden!("parameter", "d1", None, |s| scaled(0.1 * (1.0 + s))),
+        hidden!("parameter", "d1", None, |s| value(0.1 * (1.0 + s))),
         hidden!("cubic", "joint_2", Some("stretch_rate_2"), |s| coefficient(0.1 * s)),
         hidden!("cubic", "force_2", Some("v_2"), |s| coefficient(-0.1 * s)),
         hidden!("cubic", "force_1", Some("p_1"), |s| coefficient(-100.0 * s)),
-        hidden!("parameter", "a2", None, |s| scaled(1000.0 * (1.0 + s))),
+        hidden!("parameter", "a2", None, |s| value(1000.0 * (1.0 + s))),
         hidden!("coulomb_friction", "force_1", Some("v_1"), |s| format!(
             "{{ level = {:?}, width = 0.05 }}",
             -s
@@ -58,14 +36,14 @@ fn effects() -> Vec<Hidden> {
         hidden!("dead_zone", "u", Some("u"), |s| format!("{{ slope = 1.0, width = {s:?} }}")),
         hidden!("lag", "u", Some("u"), |s| format!("{{ time_constant = {:?} }}", 0.02 * s)),
         hidden!("delay", "u", Some("u"), |s| format!("{{ delay = {:?} }}", 0.02 * s)),
-        hidden!("bias", "force_1", None, |s| scaled(2.0 * s)),
-        hidden!("bias", "y", None, |s| scaled(0.02 * s)),
+        hidden!("bias", "force_1", None, |s| value(2.0 * s)),
+        hidden!("bias", "y", None, |s| value(0.02 * s)),
         hidden!("drift", "y", Some("time"), |s| format!("{{ rate = {:?} }}", 0.0002 * s)),
         hidden!("gain", "y", Some("y"), |s| format!("{{ gain = {:?} }}", 0.1 * s)),
         hidden!("quadratic", "y", Some("y"), |s| coefficient(0.3 * s)),
-        hidden!("parameter", "k1", None, |s| scaled(100.0 * (1.0 + s))),
-        hidden!("parameter", "m1", None, |s| scaled(0.5 * (1.0 + s))),
-        hidden!("parameter", "c2", None, |s| scaled(0.5 * (1.0 + s))),
+        hidden!("parameter", "k1", None, |s| value(100.0 * (1.0 + s))),
+        hidden!("parameter", "m1", None, |s| value(0.5 * (1.0 + s))),
+        hidden!("parameter", "c2", None, |s| value(0.5 * (1.0 + s))),
         hidden!("drift", "k1", Some("time"), |s| format!("{{ rate = {:?} }}", 0.05 * s)),
         hidden!("extra_mode", "force_2", Some("p_2"), |s| format!(
             "{{ frequency = 11.0, damping = 0.05, participation = {:?} }}",

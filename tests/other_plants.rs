@@ -4,29 +4,7 @@
 mod exam;
 
 use exam::plants::{CART, CIRCUIT, HEATER, PENDULUM, TANKS};
-use exam::{Conditions, Hidden, Plant, USUAL, names, placed};
-
-macro_rules! hidden {
-    ($effect:literal, $into:literal, $of:expr, $table:expr) => {
-        Hidden {
-            effect: $effect,
-            into: $into,
-            of: $of,
-            table: |s: f64| {
-                let table: fn(f64) -> String = $table;
-                placed($into, $of, &format!("{} = {}", $effect, table(s)))
-            },
-        }
-    };
-}
-
-fn value(value: f64) -> String {
-    format!("{{ value = {value:?} }}")
-}
-
-fn coefficient(value: f64) -> String {
-    format!("{{ coefficient = {value:?} }}")
-}
+use exam::{Conditions, Hidden, Plant, USUAL, coefficient, hidden, names, value};
 
 fn all() -> Vec<(&'static Plant, Vec<Hidden>)> {
     vec![
@@ -120,7 +98,7 @@ fn all() -> Vec<(&'static Plant, Vec<Hidden>)> {
 #[test]
 fn effects_are_found_in_machines_of_five_kinds() {
     let sizes = [0.5, 1.0, 2.0, 4.0];
-    let (mut named, mut count, mut poor, mut alike) = (0, 0, vec![], vec![]);
+    let (mut named, mut count, mut poor) = (0, 0, vec![]);
     let mut told = |plant: &Plant, hidden: &[&Hidden], c: Conditions| {
         let (machine, record) = plant.guilty(hidden, c);
         let finding = plant.diagnose(&record);
@@ -141,12 +119,8 @@ fn effects_are_found_in_machines_of_five_kinds() {
         );
         count += 1;
         named += usize::from(hit);
-        // where the record cannot tell it from something simpler, that heads the set and is what
-        // the model is extended by: told apart from a cause that was found and removes little
-        let headed = hidden.iter().all(|h| finding.causes.iter().any(|cause| h.heads(cause)));
         if hit && removed < 0.95 {
-            let list = if headed { &mut poor } else { &mut alike };
-            list.push(format!("{} {}: {removed:.3}", plant.name, what.join(" + ")));
+            poor.push(format!("{} {}: {removed:.3}", plant.name, what.join(" + ")));
         }
     };
     println!(
@@ -161,10 +135,7 @@ fn effects_are_found_in_machines_of_five_kinds() {
         let c = Conditions { g: 1.5, seed: 70 + p as u64, n: 3000, ..USUAL };
         told(plant, &[&effects[0], &effects[3]], c);
     }
-    println!(
-        "{named} of {count} named; removed less than 95 %: {poor:?}, by a look-alike: {alike:?}"
-    );
+    println!("{named} of {count} named; removed less than 95 %: {poor:?}");
     assert!(named * 10 >= count * 9, "{named} of {count}");
     assert!(poor.is_empty(), "{poor:?}");
-    assert!(alike.len() <= 1, "{alike:?}");
 }

@@ -19,15 +19,16 @@ const SET: usize = 4;
 impl Search<'_, '_> {
     /// Whether `a` explains as well as `b`, given what stood before.
     pub(super) fn as_good(&self, a: &Trial, b: &Trial, before: f64) -> bool {
-        let left = |t: &Trial| self.problem.residual(&t.y, Part::Choose);
+        let left = |t: &Trial| self.problem.residual(&t.y, Part::All);
         let (ra, rb) = (left(a), left(b));
         let apart: f64 = ra.iter().zip(&rb).map(|(a, b)| (a - b).powi(2)).sum();
         // predictions closer than two standard deviations of the noise, all samples together,
-        // cannot be told apart whatever the score says
+        // cannot be told apart whatever the score says; and the best of many on one part of the
+        // record has to be better on all of it too
         let told_apart = || {
             let held = self.score(&a.y, &b.y);
-            held >= AS_GOOD
-                || held > 0.5 && self.problem.better(&a.y, &b.y, Part::All) >= TOLD_APART
+            let all = || self.problem.better(&a.y, &b.y, Part::All);
+            held >= AS_GOOD && all() >= AS_GOOD || held > 0.5 && all() >= TOLD_APART
         };
         if apart > 4.0 * b.held && told_apart() {
             return false;

@@ -29,6 +29,33 @@ pub struct Hidden {
     pub table: fn(f64) -> String,
 }
 
+/// A hidden effect whose name and place stand in its table too.
+macro_rules! hidden {
+    ($effect:literal, $into:literal, $of:expr, $table:expr) => {
+        $crate::exam::Hidden {
+            effect: $effect,
+            into: $into,
+            of: $of,
+            table: |s: f64| {
+                let table: fn(f64) -> String = $table;
+                $crate::exam::placed($into, $of, &format!("{} = {}", $effect, table(s)))
+            },
+        }
+    };
+}
+#[allow(unused_imports)]
+pub(crate) use hidden;
+
+/// A table with a value.
+pub fn value(value: f64) -> String {
+    format!("{{ value = {value:?} }}")
+}
+
+/// A table with a coefficient.
+pub fn coefficient(value: f64) -> String {
+    format!("{{ coefficient = {value:?} }}")
+}
+
 /// What a machine's records look like.
 #[derive(Clone, Copy)]
 pub struct Conditions {
@@ -169,11 +196,6 @@ impl Plant {
 }
 
 impl Hidden {
-    /// Whether a cause is headed by this one.
-    pub fn heads(&self, cause: &Cause) -> bool {
-        cause.effect == self.effect && cause.into == self.into && cause.of.as_deref() == self.of
-    }
-
     /// Whether a cause is this one, or says that it cannot tell.
     pub fn is_named(&self, cause: &Cause) -> bool {
         let same = |e: &str, into: &str, of: Option<&str>| {
