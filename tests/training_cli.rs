@@ -211,3 +211,48 @@ fn what_is_wrong_with_a_configuration_is_named_with_its_place() {
         );
     }
 }
+
+const EXAM: &str = "sizes = [2.0]\nsamples = [900]\nsnr_db = [30.0]\nnulls = 1\n\n[[systems]]\n\
+                    model = \"model.toml\"\nexcitation.filtered_noise = { cutoff = 2.0, order = 2, \
+                    rms = 20.0 }\ntransient = 100\n\n[[systems.hidden]]\ninto = \"force\"\nof = \"p\"\n\
+                    effect.cubic = { coefficient = -40.0 }\n\n[[systems.hidden]]\ninto = \"stiffness\"\n\
+                    effect.parameter = { value = 44.0 }\n";
+
+#[test]
+fn an_exam_hides_effects_and_marks_what_is_found() {
+    let place = Place::new("exam");
+    place.put("exam.toml", EXAM);
+    let whole = place.json("study --config exam.toml --out whole --seed 3");
+    assert_eq!(whole["cases"], 3, "{whole}");
+    let (nothing, one) = (&whole["tallies"][0], &whole["tallies"][1]);
+    assert_eq!((&nothing["kind"], &nothing["spurious"]), (&"nothing".into(), &0.0.into()));
+    assert_eq!(
+        (&one["kind"], &one["cases"], &one["named"]),
+        (&"one".into(), &2.into(), &1.0.into())
+    );
+    assert!(one["removed_median"].as_f64().unwrap() > 0.99, "{one}");
+    assert_eq!(place.read("whole/cases.csv").lines().count(), 4);
+    assert!(place.read("whole/report.html").contains("What single effects were called"));
+    // the same in shards
+    for i in 1..=2 {
+        place.json(&format!("study --config exam.toml --shard {i}/2 --out shard{i} --seed 3"));
+    }
+    let mut merged = place.json("study merge shard1 shard2 --out merged");
+    let mut whole = whole;
+    // times differ
+    for document in [&mut merged, &mut whole] {
+        document["tallies"]
+            .as_array_mut()
+            .unwrap()
+            .iter_mut()
+            .for_each(|t| t["seconds"] = 0.into());
+        document["systems"] = 0.into();
+    }
+    assert_eq!(merged, whole);
+    assert!(place.refused("study merge shard2 --out nothing").to_string().contains("missing"));
+    // an effect that cannot be where it is to be hidden is refused before the work
+    place.put("bad.toml", &EXAM.replace("\"force\"", "\"forc\""));
+    assert!(place.refused("study --config bad.toml --out bad").to_string().contains("forc"));
+    place.put("bad.toml", &EXAM.replace("nulls = 1", "null = 1"));
+    assert_eq!(place.refused("study --config bad.toml --out bad")["line"], 4);
+}

@@ -98,7 +98,8 @@ pub enum Command {
         args_conflicts_with_subcommands = true,
         after_help = "Examples:\n  lacuna study --config study.toml --out study\n  \
         lacuna study --config study.toml --shard 2/4 --out shard2\n  \
-        lacuna study merge shard1 shard2 shard3 shard4 --out study"
+        lacuna study merge shard1 shard2 shard3 shard4 --out study\n  \
+        lacuna study --config examples/exam/exam.toml --out exam"
     )]
     Study(Study),
     /// Lists the registered models

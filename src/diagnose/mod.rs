@@ -1,5 +1,6 @@
 //! Finds what a simulation gets wrong, names it and measures the gain.
 
+mod accept;
 mod candidate;
 mod causes;
 mod curves;

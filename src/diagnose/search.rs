@@ -12,22 +12,14 @@ use super::pairs::{shortlist, stayed};
 use super::problem::{Grain, Model, Part, Problem};
 use super::screen::Screen;
 use super::sets::headed_by;
-use super::stage::{REFITTED, Trial, stage, trial};
+use super::stage::{REFITTED, Trial, stage};
 use crate::statistics::strongest;
-use crate::statistics::whiteness;
 use crate::watch::Watch;
 
 /// Score at which a model beats another for good.
-const ACCEPT: f64 = 4.0;
+pub(super) const ACCEPT: f64 = 4.0;
 /// Score that causes must pass when the baseline's residual does not depend on the inputs.
 const ACCEPT_INDEPENDENT: f64 = 7.0;
-/// Score of whiteness below which a residual has no memory that could pass for a cause.
-const WHITE: f64 = 3.0;
-/// A mean square cut to less than this counts as a strong improvement.
-const STRONG: f64 = 0.6;
-/// Trials whose steps are checked, and those that are judged again with finer ones.
-const LEADING: usize = 4;
-const JUDGED_AGAIN: usize = 8;
 /// Dependence on the inputs at which two causes are looked for where one alone is not enough.
 const DEPENDS: f64 = 4.0;
 
@@ -68,7 +60,7 @@ pub(crate) struct Search<'a, 'b> {
     pub watch: &'a dyn Watch,
     /// Share of the whole work that this search is, from and to.
     pub share: (f64, f64),
-    accept: f64,
+    pub(super) accept: f64,
 }
 
 impl<'a, 'b> Search<'a, 'b> {
@@ -105,30 +97,6 @@ impl<'a, 'b> Search<'a, 'b> {
         self.problem.better(a, b, Part::Choose)
     }
 
-    fn mean_squares(&self, y: &[Vec<f64>]) -> (f64, f64) {
-        let p = &self.problem;
-        (p.mean_square(y, Part::Fit), p.mean_square(y, Part::Choose))
-    }
-
-    /// Score at which a cause is accepted that leaves `b` unexplained. Slow noise can pass for a
-    /// cause where the first residual did not depend on the inputs; white noise cannot.
-    fn bar(&self, b: &[Vec<f64>]) -> f64 {
-        if self.accept > ACCEPT && self.is_white(b) { ACCEPT } else { self.accept }
-    }
-
-    fn is_white(&self, y: &[Vec<f64>]) -> bool {
-        let r = self.problem.residual(y, Part::All);
-        let n = r.len() / self.problem.y.len();
-        r.chunks(n).all(|r| whiteness(r).abs() < WHITE)
-    }
-
-    /// Whether going from `a` to `b` is an improvement worth a cause.
-    pub(super) fn accepts(&self, a: &[Vec<f64>], b: &[Vec<f64>], weak: bool) -> bool {
-        let score = self.score(a, b) - f64::from(u8::from(weak));
-        let ((fit_a, held_a), (fit_b, held_b)) = (self.mean_squares(a), self.mean_squares(b));
-        score >= self.bar(b) || score > 1.0 && held_b < STRONG * held_a && fit_b < STRONG * fit_a
-    }
-
     /// All candidates for what a model leaves.
     pub(super) fn candidates(&self, model: &Model) -> Vec<Arc<Candidate>> {
         let lines = match self.present(model) {
@@ -140,28 +108,6 @@ impl<'a, 'b> Search<'a, 'b> {
             None => vec![],
         };
         library(self.problem, self.nominal, model, lines, self.allowed)
-    }
-
-    /// Where the leading trials move faster than coarse steps can follow: judges them again with
-    /// the integrator's own, which the search then keeps. Whether it did.
-    fn refine(&mut self, trials: &mut Vec<Trial>) -> bool {
-        let leading: Vec<&Model> = trials.iter().take(LEADING).map(|t| &t.model).collect();
-        if !self.problem.are_too_coarse(&leading) {
-            return false;
-        }
-        self.problem.take_own_steps();
-        trials.truncate(JUDGED_AGAIN);
-        let models: Vec<Model> = trials.iter().map(|t| t.model.clone()).collect();
-        let fitted = refit(self.problem, &self.nuisance, &models, Refit::search());
-        let again = trials.drain(..).zip(fitted).filter_map(|(old, fitted)| {
-            let model = fitted?.model;
-            let y = self.problem.simulate(&model, Grain::Coarse);
-            trial(self.problem, &old.cause, model, y, old.weak)
-        });
-        let mut again: Vec<Trial> = again.collect();
-        again.sort_by(|a, b| a.held.total_cmp(&b.held));
-        *trials = again;
-        true
     }
 
     /// Flags spikes against a model.
@@ -243,7 +189,7 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             let alone = number == 0
                 && dependence > DEPENDS
-                && trials.first().is_some_and(|t| !self.accepts(&before, &t.y, t.weak));
+                && trials.first().is_some_and(|t| !self.accepts_trial(&before, t));
             if alone {
                 previous = trials.clone();
             }
@@ -252,6 +198,7 @@ impl<'a, 'b> Search<'a, 'b> {
                     && model.added.len() == 1
                     && !trials.is_empty()
                     && !(self.is_settled(&before, &trials[0]) && stayed(&model, &trials[0].model))
+                    && !self.second_suffices(&trials[0])
             {
                 self.tell(at + 0.6 * step, "looking at pairs");
                 let leading = shortlist(&candidates, [&first, &last]);
@@ -273,7 +220,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 full = false;
                 break;
             };
-            if !self.accepts(&before, &best.y, best.weak) {
+            if !self.accepts_trial(&before, best) {
                 full = false;
                 break;
             }
@@ -306,17 +253,5 @@ impl<'a, 'b> Search<'a, 'b> {
         self.tell(1.0, "done");
         let spikes = self.problem.spikes();
         Some(Found { model, slots, first, last, dependence, spikes, full })
-    }
-
-    /// Whether a model leaves nothing but white noise, so that nothing more can be found.
-    fn is_noise(&self, y: &[Vec<f64>]) -> bool {
-        self.is_white(y) && dependence(self.problem, self.nominal, y) < 2.0
-    }
-
-    /// Whether one more cause leaves nothing but noise, so that pairs need not be looked at.
-    pub(super) fn is_settled(&self, before: &[Vec<f64>], best: &Trial) -> bool {
-        let r = self.problem.residual(&best.y, Part::Choose);
-        self.score(before, &best.y) >= self.accept
-            && (whiteness(&r).abs() < 4.0 || dependence(self.problem, self.nominal, &best.y) < 2.0)
     }
 }

@@ -15,6 +15,8 @@ use crate::statistics::{corrected_score, dot};
 pub(crate) const REFITTED: usize = 8;
 /// Share of the residual that lets a candidate through whatever its score.
 const LARGE_SHARE: f64 = 0.2;
+/// Score in the screen that leaves no doubt.
+const SURE: f64 = 8.0;
 /// Below this share, or above this ratio of residual to output, the linear picture is not
 /// to be trusted and magnitudes are scanned.
 const SCAN_BELOW: f64 = 0.5;
@@ -37,6 +39,8 @@ pub(crate) struct Trial {
     pub held: f64,
     /// Let through by its share, not by its score.
     pub weak: bool,
+    /// The fitted part leaves no doubt that it, or something like it, is there.
+    pub sure: bool,
 }
 
 /// What a stage found.
@@ -208,7 +212,9 @@ fn judge(
     for ((index, fitted), y) in of.into_iter().zip(problem.run(&jobs, Span::Whole)) {
         let (scored, _) = &chosen[index];
         let weak = scored.score.abs() < bar;
-        trials.extend(trial(problem, &scored.cause, fitted, y, weak));
+        let sure = scored.score.abs() > SURE && !is_hum(&scored.cause);
+        let judged = trial(problem, &scored.cause, fitted, y, weak);
+        trials.extend(judged.map(|trial| Trial { sure, ..trial }));
     }
     trials.sort_by(|a, b| a.held.total_cmp(&b.held));
     trials
@@ -230,5 +236,6 @@ pub(crate) fn trial(
         y,
         held,
         weak,
+        sure: false,
     })
 }

@@ -30,6 +30,8 @@ pub enum Hit {
 pub struct Marks {
     /// Tells exams apart.
     pub fingerprint: u64,
+    /// Cases of the whole exam.
+    pub of: usize,
     /// The question.
     pub case: Case,
     /// Name of the machine.
@@ -105,7 +107,7 @@ impl Marks {
         machine: &Machine,
         made: &Made,
         finding: &Finding,
-        fingerprint: u64,
+        (fingerprint, of): (u64, usize),
     ) -> Result<Self, StudyError> {
         let causes: Vec<&Cause> = finding.causes.iter().filter(|c| c.rows.is_none()).collect();
         let hidden: Vec<String> = case.hidden.iter().map(|&h| machine.hidden[h].name()).collect();
@@ -128,6 +130,7 @@ impl Marks {
         let [low, high] = finding.gain.interval95;
         Ok(Self {
             fingerprint,
+            of,
             case: case.clone(),
             system: machine.name(),
             first: causes.first().is_some_and(|c| hidden.iter().any(|n| hit(c, n) > Hit::Missed)),

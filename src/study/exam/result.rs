@@ -118,7 +118,7 @@ impl ExamResult {
         if marks.iter().any(|m| m.fingerprint != first.fingerprint) {
             return Err(StudyError::merge(&nowhere, "results of different exams"));
         }
-        let missing: Vec<String> = (1..=marks.last().map_or(0, |m| m.case.number))
+        let missing: Vec<String> = (1..=first.of)
             .filter(|n| marks.binary_search_by_key(n, |m| m.case.number).is_err())
             .map(|n| n.to_string())
             .collect();

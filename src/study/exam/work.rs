@@ -48,13 +48,13 @@ impl Exam {
         }
         let folder = folder.join("marks");
         std::fs::create_dir_all(&folder).map_err(|error| StudyError::merge(&folder, error))?;
-        let fingerprint = self.fingerprint(systems, seed)?;
+        let exam = (self.fingerprint(systems, seed)?, self.cases()?.len());
         let mut open = vec![];
         for case in cases {
             let path = folder.join(format!("case{}.json", case.number));
             if !path.exists() {
                 open.push((case, path));
-            } else if Marks::read(&path)?.fingerprint != fingerprint {
+            } else if Marks::read(&path)?.fingerprint != exam.0 {
                 return Err(StudyError::merge(&path, "the result of another exam"));
             }
         }
@@ -65,7 +65,7 @@ impl Exam {
                 if watch.stopped() {
                     return;
                 }
-                let marks = self.ask(systems, case, seed, fingerprint);
+                let marks = self.ask(systems, case, seed, exam);
                 match marks.and_then(|marks| write(path, &marks).map(|()| marks)) {
                     Ok(marks) => {
                         let count = done.fetch_add(1, Ordering::Relaxed) + 1;
@@ -99,7 +99,7 @@ impl Exam {
         systems: &[System],
         case: &Case,
         seed: u64,
-        fingerprint: u64,
+        exam: (u64, usize),
     ) -> Result<Marks, StudyError> {
         let machine = &self.systems[case.system];
         let made = machine.make(&systems[case.system], case, seed)?;
@@ -110,7 +110,7 @@ impl Exam {
             diagnosis = diagnosis.without(&hidden.map(String::from).collect::<Vec<_>>());
         }
         let finding = diagnosis.run(std::slice::from_ref(&made.record), None, &())?;
-        Marks::of(case, machine, &made, &finding, fingerprint)
+        Marks::of(case, machine, &made, &finding, exam)
     }
 }
 
