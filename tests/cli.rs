@@ -11,6 +11,7 @@ mod cli {
     mod lists;
     mod model_files;
     mod pipes;
+    mod plan;
     mod records;
     mod refusal;
     mod work;

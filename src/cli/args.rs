@@ -82,6 +82,18 @@ pub enum Command {
         --out. The same call goes on from checkpoint.json there; one Ctrl-C stops with the best model."
     )]
     Fit(Fit),
+    /// Says what a record can see and tell apart, and the experiment that would tell more
+    #[command(after_help = "Example:\n  lacuna plan --model press.toml --data est.csv\n\n\
+        Every cause of the library is simulated along the record, a little of it, and measured by the\n\
+        noise. -v lists every cause and every pair. Writes no file. --json prints\n  \
+        noise_floor    noise of each output and where it is from\n  \
+        causes         smallest_visible (parameters trusted), smallest_visible_free, unit, and kappa,\n                 \
+        the share of the effect that free parameters cannot imitate\n  \
+        look_alikes    pairs with a correlation rho above 0.95, or a separation below 10 when each\n                 \
+        moves the outputs as much as the noise does; told_apart_by which experiments\n  \
+        experiments    level, offset, band, another sensor: pairs that each tells apart, and causes\n                 \
+        that it shows and the record does not")]
+    Plan(Plan),
     /// Says whether data reject a model: exit status 0 if they do not, 3 if they do
     #[command(
         after_help = "Example:\n  lacuna check --model press.toml --data today.csv --level 0.01"
@@ -196,6 +208,15 @@ pub struct Fit {
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
     pub out: PathBuf,
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Plan {
+    #[command(flatten)]
+    pub on: ModelAndData,
+    /// Parameters that are right
+    #[arg(long, value_name = "PARAMETER", value_delimiter = ',', num_args = 1..)]
+    pub fix: Vec<String>,
 }
 
 #[derive(Debug, Clone, Arguments)]

@@ -17,6 +17,7 @@ mod input;
 mod linear;
 mod list;
 mod look;
+mod plan;
 mod simulate;
 mod study;
 
@@ -53,6 +54,7 @@ fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
         Command::Fit(fit) => fit::run(fit, seed, args.common.threads, look),
         Command::Generate(generate) => generate::run(generate, seed, look),
         Command::Study(study) => study::run(study, seed, args.common.threads, look),
+        Command::Plan(plan) => plan::run(plan, look),
         Command::Check(check) => check::run(check, look),
         Command::Models => list::models(look),
         Command::Effects => list::effects(look),

@@ -18,6 +18,7 @@ mod nominal;
 mod nuisance;
 mod pairs;
 mod places;
+mod plan;
 mod precision;
 mod prepared;
 mod probes;
@@ -45,4 +46,5 @@ pub use finding::{
     Alternative, Cause, Curve, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack,
     Ranked, Scores, Series, Track, Value, Verdict,
 };
+pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
 pub(crate) use words::number;

@@ -1,0 +1,28 @@
+//! `lacuna plan`.
+
+use super::args::Plan as Args;
+use super::failure::Failure;
+use super::input;
+use super::look::Look;
+use crate::data::Record;
+use crate::diagnose::Planner;
+
+pub fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
+    let (system, want) = input::model(&args.on.model)?;
+    let read = |path: &std::path::PathBuf| input::record(path, &want, look);
+    let records: Vec<Record> = args.on.data.iter().map(read).collect::<Result<_, _>>()?;
+    look.hear_interrupts()?;
+    let outlook = Planner::of(&system).fix(&args.fix).run(&records, look)?;
+    look.clear();
+    for cause in &outlook.causes {
+        look.detail(&cause.line());
+    }
+    for pair in &outlook.look_alikes {
+        look.detail(&pair.line());
+    }
+    look.result(&outlook.to_string());
+    let document = serde_json::to_value(&outlook)
+        .map_err(|error| Failure::work(format!("the result cannot be written: {error}")))?;
+    look.document(&document);
+    Ok(0)
+}
