@@ -6,12 +6,15 @@ use lacuna::encoder::{Baseline as Known, Encoder, LinearEncoder, ResNetEncoder, 
 use lacuna::lfr::{Baseline, Block, Form, Scales, Sink, Source, Structure};
 use lacuna::model::StateSpaceModel;
 use lacuna::plugins::systems::{Duffing, MassSpringDamper};
-use lacuna::prelude::*;
 use lacuna::system::{Hold, Integrator, Method, Sampling, System};
 use lacuna::train::{Arithmetic, Augmented, MultipleShooting, Shooting};
 
 #[path = "bench/training/oracle.rs"]
 mod oracle;
+#[path = "paper_msd/without_adjoint.rs"]
+mod without_adjoint;
+
+use without_adjoint::WithoutAdjoint;
 
 fn masses() -> MassSpringDamper {
     MassSpringDamper {
@@ -25,34 +28,6 @@ fn masses() -> MassSpringDamper {
         fixed: vec![],
     }
 }
-
-/// The same physics without its own adjoint, so that dual numbers have to do.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct WithoutAdjoint(MassSpringDamper);
-
-impl Physics for WithoutAdjoint {
-    fn signals(&self) -> Signals {
-        Physics::signals(&self.0)
-    }
-    #[inline(always)]
-    fn derive<R: Real>(&self, theta: &[R], derived: &mut [R]) {
-        self.0.derive(theta, derived);
-    }
-    #[inline(always)]
-    fn derivative<R: Real>(&self, at: &At<R>, dx: &mut [R]) {
-        self.0.derivative(at, dx);
-    }
-    #[inline(always)]
-    fn output<R: Real>(&self, at: &At<R>, y: &mut [R]) {
-        Physics::output(&self.0, at, y);
-    }
-    #[inline(always)]
-    fn coordinates<R: Real>(&self, at: &At<R>, z: &mut [R]) {
-        Physics::coordinates(&self.0, at, z);
-    }
-}
-
-lacuna::register!(StateSpaceModel for WithoutAdjoint, "masses_without_adjoint", "for tests");
 
 fn sampling(method: Method, substeps: usize, hold: Hold) -> Sampling {
     Sampling { sampling_time: Some(0.1), integrator: Integrator { method, substeps }, hold }

@@ -32,6 +32,8 @@ pub struct BoucWen {
 }
 
 impl Physics for BoucWen {
+    const STRAIGHT: &'static [usize] = &[3];
+
     fn signals(&self) -> Signals {
         Signals::continuous()
             .input("u", "N")

@@ -20,6 +20,8 @@ pub struct CascadedTanks {
 }
 
 impl Physics for CascadedTanks {
+    const STRAIGHT: &'static [usize] = &[2];
+
     fn signals(&self) -> Signals {
         Signals::continuous()
             .input("u", "")

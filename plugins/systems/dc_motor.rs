@@ -22,6 +22,8 @@ pub struct DcMotor {
 }
 
 impl Physics for DcMotor {
+    const STRAIGHT: &'static [usize] = &[2];
+
     fn signals(&self) -> Signals {
         Signals::continuous()
             .input("u", "V")

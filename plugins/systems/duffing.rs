@@ -21,6 +21,8 @@ pub struct Duffing {
 }
 
 impl Physics for Duffing {
+    const STRAIGHT: &'static [usize] = &[2];
+
     fn signals(&self) -> Signals {
         Signals::continuous()
             .input("u", "N")

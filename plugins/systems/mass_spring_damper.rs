@@ -44,6 +44,23 @@ impl MassSpringDamper {
     }
 }
 
+/// What follows for each mass, for the compiler to see as straight formulas where the number
+/// of masses is known to it.
+macro_rules! each_mass {
+    ($n:ident, $known:ident, |$i:ident| $body:block) => {
+        match $known {
+            1..=3 => { each_mass!(@ $known, $i, $body, 0 1 2); }
+            _ => for $i in 0..$n $body,
+        }
+    };
+    (@ $known:ident, $i:ident, $body:block, $($mass:literal)*) => {$(
+        if $known > $mass {
+            let $i: usize = $mass;
+            $body
+        }
+    )*};
+}
+
 impl MassSpringDamper {
     /// The forces on `n` masses; `N` is the same number where it is known beforehand.
     #[inline(always)]
@@ -52,11 +69,11 @@ impl MassSpringDamper {
         let (theta, x, w) = (&at.theta[..5 * n], &at.x[..2 * n], &at.w[..2 * n]);
         let dx = &mut dx[..2 * n];
         let (k, c) = (&theta[n..2 * n], &theta[2 * n..3 * n]);
-        let inverse_mass = &at.derived[..n];
+        let (inverse_mass, driven) = at.derived.split_at(n);
         let (a, d) = (&theta[3 * n..4 * n], &theta[4 * n..]);
         // each mass is finished when the element behind it is known: nothing is written twice
         let mut force = R::constant(0.0);
-        for i in 0..n {
+        each_mass!(n, N, |i| {
             let (mut stretch, mut rate) = (x[2 * i], x[2 * i + 1]);
             if i > 0 {
                 stretch -= x[2 * i - 2];
@@ -69,17 +86,21 @@ impl MassSpringDamper {
                 dx[2 * i - 1] = (force + pull) * inverse_mass[i - 1];
             }
             force = w[i];
-            for (_, &u) in self.driven.iter().zip(at.u).filter(|(mass, _)| **mass == i + 1) {
-                force += u;
+            // one input in words, because a loop is more than a formula
+            match at.u {
+                [u] => force += driven[i] * *u,
+                all => {
+                    for (j, &u) in all.iter().enumerate() {
+                        force += driven[j * n + i] * u;
+                    }
+                }
             }
             force -= pull;
             dx[2 * i] = x[2 * i + 1];
-        }
+        });
         dx[2 * n - 1] = force * inverse_mass[n - 1];
     }
-}
 
-impl MassSpringDamper {
     /// The adjoint of the same: what moves each force, taken back to stretches and rates.
     #[inline(always)]
     fn pull_chain<R: Real, const N: usize>(&self, n: usize, at: &At<R>, pull: Pull<'_, R>) {
@@ -89,11 +110,7 @@ impl MassSpringDamper {
         let (a, d) = (&theta[3 * n..4 * n], &theta[4 * n..]);
         let inverse_mass = &at.derived[..n];
         let along = &mut pull.x[..2 * n];
-        for i in 0..n {
-            along[2 * i] = R::constant(0.0);
-            along[2 * i + 1] = lambda[2 * i];
-        }
-        for i in 0..n {
+        each_mass!(n, N, |i| {
             let (mut stretch, mut rate) = (x[2 * i], x[2 * i + 1]);
             // element i pulls mass i back and the mass before it forward
             let mut force = lambda[2 * i + 1] * inverse_mass[i];
@@ -104,13 +121,13 @@ impl MassSpringDamper {
             }
             let on_stretch = (k[i] + a[i] * 3.0 * stretch * stretch) * force;
             let on_rate = (c[i] + d[i] * 3.0 * rate * rate) * force;
-            along[2 * i] -= on_stretch;
-            along[2 * i + 1] -= on_rate;
+            along[2 * i] = -on_stretch;
+            along[2 * i + 1] = lambda[2 * i] - on_rate;
             if i > 0 {
                 along[2 * i - 2] += on_stretch;
                 along[2 * i - 1] += on_rate;
             }
-        }
+        });
         if pull.wants_u {
             for (&mass, u) in self.driven.iter().zip(pull.u) {
                 *u = lambda[2 * mass - 1] * inverse_mass[mass - 1];
@@ -120,6 +137,8 @@ impl MassSpringDamper {
 }
 
 impl Physics for MassSpringDamper {
+    const STRAIGHT: &'static [usize] = &[2, 4];
+
     fn signals(&self) -> Signals {
         let n = self.masses.len();
         let numbered = |letter: &str, i: usize, of: usize| {
@@ -171,7 +190,7 @@ impl Physics for MassSpringDamper {
                 "velocity",
             );
         }
-        signals.fixing(&self.fixed).deriving(n)
+        signals.fixing(&self.fixed).deriving(n + n * self.driven.len())
     }
 
     fn faults(&self) -> Vec<Fault> {
@@ -219,11 +238,18 @@ impl Physics for MassSpringDamper {
         format!("{list}.{}", number.parse::<usize>().map_or(0, |n| n.saturating_sub(1)))
     }
 
-    /// One over every mass.
+    /// One over every mass, then for each input 1 at the mass that it pushes and else 0.
     #[inline(always)]
     fn derive<R: Real>(&self, theta: &[R], derived: &mut [R]) {
-        for (inverse, &mass) in derived.iter_mut().zip(theta) {
+        let n = self.masses.len();
+        let (inverse, driven) = derived.split_at_mut(n);
+        for (inverse, &mass) in inverse.iter_mut().zip(theta) {
             *inverse = R::constant(1.0) / mass;
+        }
+        for (own, &mass) in driven.chunks_mut(n.max(1)).zip(&self.driven) {
+            for (i, share) in own.iter_mut().enumerate() {
+                *share = R::constant(if i + 1 == mass { 1.0 } else { 0.0 });
+            }
         }
     }
 

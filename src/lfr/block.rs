@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Ask, Sizes, StateSpaceModel};
+use crate::model::{Ask, Sizes, Stage, StateSpaceModel};
 use crate::network::{Frame, ResNet};
 use crate::system::{Hold, Method, Sampling, System};
 
@@ -17,15 +17,6 @@ pub(crate) enum Pace {
     Euler { substeps: usize, step: f64 },
     /// Equal steps of the classical fourth-order Runge-Kutta method.
     Rk4 { substeps: usize, step: f64 },
-}
-
-/// One evaluation of the law inside a step: when (in steps), how far from the beginning
-/// along the stage before, and its share in the result.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Stage {
-    pub at: f64,
-    pub from_before: f64,
-    pub weight: f64,
 }
 
 impl Pace {

@@ -2,13 +2,13 @@
 
 use std::ops::Range;
 
-use crate::model::{Ask, Block, DIRECTIONS, LaneNumber, Law, Pull, Sizes};
+use crate::model::{Ask, Block, DIRECTIONS, LaneNumber, Law, March, Pull, Sizes, Way};
 use crate::network::Row;
 use crate::real::Real;
 
 use super::Baseline;
 use super::block::Pace;
-use super::number::{Number, per_row, repeated};
+use super::number::{Number, lanes, per_row, repeated};
 
 /// Bytes of parameters that a law is asked with at once: a third of what is nearest.
 const NEAR: usize = 12 * 1024;
@@ -27,6 +27,10 @@ pub(crate) struct Driver<'a, E: Number> {
     pub(super) ramps: bool,
     /// Whether the law has an adjoint of its own that will do.
     pub(super) adjoint: bool,
+    /// Whether the law has a kernel that takes a whole sample at once.
+    pub(super) whole: bool,
+    /// What the law derives from its parameters, once.
+    derived: Vec<f64>,
     pub(super) plain: Constants<E::Lanes>,
     pub(super) groups: Vec<Group<E>>,
 }
@@ -69,11 +73,14 @@ impl<'a, E: Number> Driver<'a, E> {
             timed: looks_at_time(law),
             ramps: baseline.ramps(),
             adjoint: false,
+            whole: false,
+            derived: vec![],
             plain: empty,
             groups: vec![],
         };
         driver.set(&baseline.theta());
         driver.adjoint = driver.free.is_empty() && driver.has_adjoint();
+        driver.whole = driver.marches();
         driver
     }
 
@@ -88,6 +95,8 @@ impl<'a, E: Number> Driver<'a, E> {
     pub fn set(&mut self, theta: &[f64]) {
         self.theta = theta.to_vec();
         self.plain = self.constants::<E::Lanes>(|_, _| {});
+        let derived = self.plain.derived.iter().take(self.sizes.derived);
+        self.derived = derived.map(|value| value.lane(0)).collect();
         let [_, first, count] = self.directions();
         let groups = (0..count).step_by(DIRECTIONS).map(|start| {
             let range = start..(start + DIRECTIONS).min(count);
@@ -191,6 +200,46 @@ impl<'a, E: Number> Driver<'a, E> {
             };
             self.law.pull(E::pull(&one(&block, pack, time(pack)), pull))
         })
+    }
+
+    /// Room that a march needs.
+    pub(super) fn march_room(&self) -> usize {
+        2 * self.pace.substeps() * self.pace.tableau().len() * self.sizes.x
+    }
+
+    /// A whole sample in one call of the law; `false` where it has no kernel for that.
+    pub(super) fn march(
+        &self,
+        sight: Sight<'_, E>,
+        kept: &mut [E::Lanes],
+        way: Way<'_, E::Lanes>,
+    ) -> bool {
+        let (x, u) = sight.z.split_at(self.sizes.x);
+        self.law.march(E::march(March {
+            sizes: self.sizes,
+            packs: per_row::<E>(),
+            substeps: self.pace.substeps(),
+            step: self.pace.step(),
+            stages: self.pace.tableau(),
+            theta: &self.theta,
+            derived: &self.derived,
+            x: lanes(x),
+            u: lanes(u),
+            du: lanes(sight.du),
+            time: lanes(std::slice::from_ref(sight.time)),
+            kept,
+            way,
+        }))
+    }
+
+    /// Whether the law has such a kernel.
+    fn marches(&self) -> bool {
+        let (n, time) = (self.sizes, Row::zero());
+        let z = vec![Row::zero(); n.x + n.u];
+        let zeros = |count: usize| vec![E::Lanes::constant(0.0); count];
+        let (mut kept, mut end) = (zeros(self.march_room()), zeros(per_row::<E>() * n.x));
+        let sight = Sight { z: &z, du: &[], time: &time };
+        self.pace != Pace::Discrete && self.march(sight, &mut kept, Way::Forward(&mut end))
     }
 
     /// Whether the law has an adjoint of its own.

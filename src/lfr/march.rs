@@ -1,7 +1,7 @@
 //! A baseline's law through one sample, forward and back, stage by stage for all packs of a
 //! block at once.
 
-use crate::model::{Ask, DIRECTIONS, LaneNumber};
+use crate::model::{Ask, DIRECTIONS, LaneNumber, Way};
 use crate::network::Row;
 use crate::real::Real;
 
@@ -53,7 +53,7 @@ impl<E: Number> Room<E> {
             sum: zeros(n.x),
             k: zeros(n.x),
             u: [zeros(n.u), zeros(n.u)],
-            kept: zeros((stages + 1) * n.x),
+            kept: zeros(((stages + 1) * n.x).max(driver.march_room().div_ceil(packs))),
             y: zeros(n.y),
             lambda: zeros(n.x),
             weight: zeros(n.x.max(n.y)),
@@ -122,6 +122,9 @@ impl<E: Number> Room<E> {
 
     /// f_base: the states one sample later.
     pub fn next(&mut self, driver: &Driver<'_, E>, sight: Sight<'_, E>, end: &mut [Row<E>]) {
+        if driver.whole && driver.march(sight, &mut self.kept, Way::Forward(lanes_mut(end))) {
+            return;
+        }
         self.advance(driver, sight, false);
         combine::collect(&self.x, lanes_mut(end), per_row::<E>());
     }
@@ -144,6 +147,12 @@ impl<E: Number> Room<E> {
         along_x: &mut [Row<E>],
         along_u: &mut [Row<E>],
     ) {
+        if driver.whole && driver.free.is_empty() && !driver.wants_u {
+            let way = Way::Back(lanes(along_end), lanes_mut(along_x));
+            if driver.march(sight, &mut self.kept, way) {
+                return;
+            }
+        }
         self.advance(driver, sight, true);
         let zero = E::Lanes::constant(0.0);
         let (packs, size) = (per_row::<E>(), self.x.len());

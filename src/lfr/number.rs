@@ -1,6 +1,8 @@
 //! The two precisions as laws and networks see them: one memory, two views.
 
-use crate::model::{Block, DIRECTIONS, Dual32, Dual64, LaneNumber, Pull, PullCall};
+use crate::model::{
+    Block, DIRECTIONS, Dual32, Dual64, LaneNumber, March, MarchCall, Pull, PullCall,
+};
 use crate::network::{Precision, Row};
 use crate::real::{Dual, F32x16, F64x8, Real};
 
@@ -15,6 +17,8 @@ pub(crate) trait Number: Precision {
 
     /// Wraps a question for an adjoint.
     fn pull<'a>(block: &'a Block<'a, Self::Lanes>, pull: Pull<'a, Self::Lanes>) -> PullCall<'a>;
+    /// Wraps a sample for a kernel.
+    fn march(march: March<'_, Self::Lanes>) -> MarchCall<'_>;
     /// Dual numbers by their parts.
     fn parts(duals: &[Self::Slopes]) -> &[Dual<Self::Lanes, DIRECTIONS>];
     /// The same, to be changed.
@@ -30,6 +34,9 @@ macro_rules! number {
 
             fn pull<'a>(block: &'a Block<'a, $lanes>, pull: Pull<'a, $lanes>) -> PullCall<'a> {
                 PullCall::$variant(block, pull)
+            }
+            fn march(march: March<'_, $lanes>) -> MarchCall<'_> {
+                MarchCall::$variant(march)
             }
             #[inline(always)]
             fn parts(duals: &[$slopes]) -> &[$slopes] {

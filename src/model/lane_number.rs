@@ -26,70 +26,47 @@ pub trait LaneNumber: InRegisters {
     const FLUSH: f64;
 }
 
-impl LaneNumber for F64x8 {
-    const LANES: usize = 8;
-    const FLUSH: f64 = 1e-120;
-    #[inline(always)]
-    fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a> {
-        Call::F64(block, out)
-    }
-    #[inline(always)]
-    fn lane(&self, lane: usize) -> f64 {
-        self.0[lane]
-    }
-    #[inline(always)]
-    fn set_lane(&mut self, lane: usize, value: f64) {
-        self.0[lane] = value;
-    }
+/// The same for one and the other precision.
+macro_rules! lane_numbers {
+    ($($plain:ty, $single:ty, $lanes:literal, $flush:literal, $call:ident,
+       $slopes:ty, $call_slopes:ident;)*) => {$(
+        impl LaneNumber for $plain {
+            const LANES: usize = $lanes;
+            const FLUSH: f64 = $flush;
+            #[inline(always)]
+            fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a> {
+                Call::$call(block, out)
+            }
+            #[inline(always)]
+            fn lane(&self, lane: usize) -> f64 {
+                f64::from(self.0[lane])
+            }
+            #[inline(always)]
+            fn set_lane(&mut self, lane: usize, value: f64) {
+                self.0[lane] = value as $single;
+            }
+        }
+
+        impl LaneNumber for $slopes {
+            const LANES: usize = $lanes;
+            const FLUSH: f64 = $flush;
+            #[inline(always)]
+            fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a> {
+                Call::$call_slopes(block, out)
+            }
+            #[inline(always)]
+            fn lane(&self, lane: usize) -> f64 {
+                self.value.lane(lane)
+            }
+            #[inline(always)]
+            fn set_lane(&mut self, lane: usize, value: f64) {
+                self.value.set_lane(lane, value);
+            }
+        }
+    )*};
 }
 
-impl LaneNumber for F32x16 {
-    const LANES: usize = 16;
-    const FLUSH: f64 = 1e-25;
-    #[inline(always)]
-    fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a> {
-        Call::F32(block, out)
-    }
-    #[inline(always)]
-    fn lane(&self, lane: usize) -> f64 {
-        f64::from(self.0[lane])
-    }
-    #[inline(always)]
-    fn set_lane(&mut self, lane: usize, value: f64) {
-        self.0[lane] = value as f32;
-    }
-}
-
-impl LaneNumber for Dual64 {
-    const LANES: usize = 8;
-    const FLUSH: f64 = F64x8::FLUSH;
-    #[inline(always)]
-    fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a> {
-        Call::Dual64(block, out)
-    }
-    #[inline(always)]
-    fn lane(&self, lane: usize) -> f64 {
-        self.value.lane(lane)
-    }
-    #[inline(always)]
-    fn set_lane(&mut self, lane: usize, value: f64) {
-        self.value.set_lane(lane, value);
-    }
-}
-
-impl LaneNumber for Dual32 {
-    const LANES: usize = 16;
-    const FLUSH: f64 = F32x16::FLUSH;
-    #[inline(always)]
-    fn call<'a>(block: &'a Block<'a, Self>, out: &'a mut [Self]) -> Call<'a> {
-        Call::Dual32(block, out)
-    }
-    #[inline(always)]
-    fn lane(&self, lane: usize) -> f64 {
-        self.value.lane(lane)
-    }
-    #[inline(always)]
-    fn set_lane(&mut self, lane: usize, value: f64) {
-        self.value.set_lane(lane, value);
-    }
+lane_numbers! {
+    F64x8, f64, 8, 1e-120, F64, Dual64, Dual64;
+    F32x16, f32, 16, 1e-25, F32, Dual32, Dual32;
 }

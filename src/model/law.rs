@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use super::Signals;
 use super::lane_number::{Dual32, Dual64};
+use super::march::MarchCall;
 use crate::real::{F32x16, F64x8};
 
 /// What a law is asked for.
@@ -190,6 +191,13 @@ pub trait Law: Debug + Send + Sync {
 
     /// The derivative's own adjoint, for whole blocks; `false` where the law has none.
     fn pull(&self, call: PullCall<'_>) -> bool {
+        let _ = call;
+        false
+    }
+
+    /// A whole sample in one call; `false` where the law has no kernel for that, and nothing
+    /// has been written.
+    fn march(&self, call: MarchCall<'_>) -> bool {
         let _ = call;
         false
     }

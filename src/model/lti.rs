@@ -115,6 +115,9 @@ impl Lti {
 }
 
 impl Physics for Lti {
+    /// They loop over matrices.
+    const STRAIGHT: &'static [usize] = &[];
+
     fn signals(&self) -> Signals {
         let (n, nu, ny) = self.dimensions();
         let mut signals = match self.time {

@@ -5,18 +5,22 @@
 //! blocks of lanes at once; a blanket implementation turns the first into the second.
 //! [`StateSpaceModel`] is the registered trait: empty, with `Law` below it.
 
+mod at;
 pub mod equations;
 mod lane_number;
 mod law;
 pub mod linearised;
 pub mod lti;
+mod march;
 mod physics;
 pub(crate) mod probe;
 mod signals;
 
+pub use at::At;
 pub use lane_number::{DIRECTIONS, Dual32, Dual64, LaneNumber};
 pub use law::{Ask, Block, Call, Fault, Law, Matrices, Pull, PullCall, Sizes};
-pub use physics::{At, Physics};
+pub use march::{March, MarchCall, Stage, Way};
+pub use physics::Physics;
 pub use signals::{Parameter, Quantity, Signal, Signals, State, TimeKind};
 
 /// A state-space model x' = f(x, u, w), y = h(x, u) that model files can name.

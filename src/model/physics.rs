@@ -2,76 +2,12 @@
 
 use std::fmt::Debug;
 
+use super::at::At;
 use super::law::{Ask, Block, Call, Fault, Law, Matrices, Pull, PullCall};
+use super::march::{MarchCall, march};
 use super::{Signals, TimeKind};
 use crate::per_lanes;
 use crate::real::{InRegisters, Real};
-
-/// Everything a law may look at in one instant.
-///
-/// Slices keep the order of declaration in [`Signals`]. The methods hand out arrays, so
-/// that the textbook's letters can be written on the left:
-/// `let &[mass, damping] = at.parameters();`
-#[derive(Debug, Clone, Copy)]
-pub struct At<'a, R> {
-    /// Parameters.
-    pub theta: &'a [R],
-    /// What [`Physics::derive`] made of them.
-    pub derived: &'a [R],
-    /// States.
-    pub x: &'a [R],
-    /// Inputs.
-    pub u: &'a [R],
-    /// What enters the declared channels; all zero while nothing is missing.
-    pub w: &'a [R],
-    /// Time since the first sample, in s.
-    pub time: R,
-}
-
-impl<'a, R> At<'a, R> {
-    /// The parameters as an array.
-    #[inline(always)]
-    #[track_caller]
-    pub fn parameters<const N: usize>(&self) -> &'a [R; N] {
-        exactly(self.theta, "parameters")
-    }
-
-    /// The states as an array.
-    #[inline(always)]
-    #[track_caller]
-    pub fn states<const N: usize>(&self) -> &'a [R; N] {
-        exactly(self.x, "states")
-    }
-
-    /// The inputs as an array.
-    #[inline(always)]
-    #[track_caller]
-    pub fn inputs<const N: usize>(&self) -> &'a [R; N] {
-        exactly(self.u, "inputs")
-    }
-
-    /// What enters the channels as an array.
-    #[inline(always)]
-    #[track_caller]
-    pub fn channels<const N: usize>(&self) -> &'a [R; N] {
-        exactly(self.w, "channels")
-    }
-}
-
-#[inline(always)]
-#[track_caller]
-fn exactly<'a, R, const N: usize>(slice: &'a [R], what: &'static str) -> &'a [R; N] {
-    match slice.try_into() {
-        Ok(array) => array,
-        Err(_) => miscounted(what, slice.len(), N),
-    }
-}
-
-#[cold]
-#[track_caller]
-fn miscounted(what: &str, declared: usize, taken: usize) -> ! {
-    panic!("this model declares {declared} {what} in `signals` but its law takes {taken}")
-}
 
 /// A physical system, written once in any kind of number.
 ///
@@ -117,6 +53,13 @@ fn miscounted(what: &str, declared: usize, taken: usize) -> ! {
 /// lacuna::register!(StateSpaceModel for Pendulum, "my_pendulum", "a swinging arm");
 /// ```
 pub trait Physics: Debug + Send + Sync {
+    /// Numbers of states with which the laws are straight formulas: for each of them (4 at
+    /// most) a kernel is compiled that takes a whole sample at once, so that learning beside
+    /// this model takes a fraction of the time. Naming the one number that the model has
+    /// compiles faster; say `&[]` where the laws loop over lists whose length only the values
+    /// know, which such a kernel makes slower.
+    const STRAIGHT: &'static [usize] = &[1, 2, 3, 4];
+
     /// Names, units, bounds, initial values. Called once per run, not per sample.
     fn signals(&self) -> Signals;
 
@@ -198,6 +141,10 @@ impl<P: Physics> Law for P {
             PullCall::F32(block, pull) => pulls(self, block, pull, &mut done),
         }
         done
+    }
+
+    fn march(&self, call: MarchCall<'_>) -> bool {
+        march(self, call)
     }
 
     fn matrices(&self, theta: &[f64]) -> Option<Matrices> {

@@ -17,6 +17,8 @@
 
 mod dual;
 pub mod elementary;
+#[cfg(target_arch = "x86_64")]
+pub(crate) mod fused;
 mod isa;
 mod lanes;
 mod scalar;

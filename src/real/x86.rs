@@ -7,6 +7,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
+use super::fused::Fuse;
 use super::{Real, elementary};
 
 /// Defines a block of `$lanes` numbers in `$count` registers.
@@ -16,6 +17,7 @@ use super::{Real, elementary};
 macro_rules! registers {
     ($(#[$meta:meta])* $name:ident, $t:ty, $lanes:literal, $reg:ty, $count:literal,
      $set:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $sqrt:ident,
+     $fma:ident, $fms:ident, $fnma:ident,
      |$a:ident, $b:ident| less: $less:expr, nan: $nan:expr,
      |$m:ident, $y:ident, $n:ident| pick: $pick:expr, |$v:ident| flip: $flip:expr, abs: $abs:expr) => {
         $(#[$meta])*
@@ -121,6 +123,8 @@ macro_rules! registers {
             }
         }
 
+        registers!(@fused $name, $count, fma $fma fms $fms fnma $fnma);
+
         impl Real for $name {
             registers!(@elementary sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, ln);
 
@@ -196,6 +200,17 @@ macro_rules! registers {
             }
         }
     };
+    (@fused $name:ident, $count:literal, $($method:ident $fused:ident)*) => {
+        impl Fuse for $name {$(
+            #[inline(always)]
+            fn $method(mut self, b: Self, c: Self) -> Self {
+                for k in 0..$count {
+                    self.0[k] = unsafe { $fused(self.0[k], b.0[k], c.0[k]) };
+                }
+                self
+            }
+        )*}
+    };
     (@elementary $($function:ident),*) => {$(
         #[inline(always)]
         fn $function(self) -> Self {
@@ -208,6 +223,7 @@ registers! {
     /// Eight `f64` in one AVX-512 register.
     F64x8Avx512, f64, 8, __m512d, 1,
     _mm512_set1_pd, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd, _mm512_sqrt_pd,
+    _mm512_fmadd_pd, _mm512_fmsub_pd, _mm512_fnmadd_pd,
     |a, b| less: _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b), nan: _mm512_cmp_pd_mask::<_CMP_UNORD_Q>(a, a),
     |m, y, n| pick: _mm512_mask_blend_pd(m, n, y),
     |v| flip: _mm512_xor_pd(v, _mm512_set1_pd(-0.0)), abs: _mm512_abs_pd(v)
@@ -217,6 +233,7 @@ registers! {
     /// Sixteen `f32` in one AVX-512 register.
     F32x16Avx512, f32, 16, __m512, 1,
     _mm512_set1_ps, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps, _mm512_div_ps, _mm512_sqrt_ps,
+    _mm512_fmadd_ps, _mm512_fmsub_ps, _mm512_fnmadd_ps,
     |a, b| less: _mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b), nan: _mm512_cmp_ps_mask::<_CMP_UNORD_Q>(a, a),
     |m, y, n| pick: _mm512_mask_blend_ps(m, n, y),
     |v| flip: _mm512_xor_ps(v, _mm512_set1_ps(-0.0)), abs: _mm512_abs_ps(v)
@@ -226,6 +243,7 @@ registers! {
     /// Eight `f64` in two AVX registers.
     F64x8Avx2, f64, 8, __m256d, 2,
     _mm256_set1_pd, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd, _mm256_sqrt_pd,
+    _mm256_fmadd_pd, _mm256_fmsub_pd, _mm256_fnmadd_pd,
     |a, b| less: _mm256_cmp_pd::<_CMP_LT_OQ>(a, b), nan: _mm256_cmp_pd::<_CMP_UNORD_Q>(a, a),
     |m, y, n| pick: _mm256_blendv_pd(n, y, m),
     |v| flip: _mm256_xor_pd(v, _mm256_set1_pd(-0.0)), abs: _mm256_andnot_pd(_mm256_set1_pd(-0.0), v)
@@ -235,6 +253,7 @@ registers! {
     /// Sixteen `f32` in two AVX registers.
     F32x16Avx2, f32, 16, __m256, 2,
     _mm256_set1_ps, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps, _mm256_div_ps, _mm256_sqrt_ps,
+    _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps,
     |a, b| less: _mm256_cmp_ps::<_CMP_LT_OQ>(a, b), nan: _mm256_cmp_ps::<_CMP_UNORD_Q>(a, a),
     |m, y, n| pick: _mm256_blendv_ps(n, y, m),
     |v| flip: _mm256_xor_ps(v, _mm256_set1_ps(-0.0)), abs: _mm256_andnot_ps(_mm256_set1_ps(-0.0), v)

@@ -18,6 +18,8 @@ mod peak;
 #[path = "../paper_msd/record.rs"]
 #[allow(dead_code)]
 mod record;
+#[path = "../paper_msd/without_adjoint.rs"]
+mod without_adjoint;
 
 use std::hint::black_box;
 use std::time::Instant;
@@ -26,11 +28,10 @@ use lacuna::data::Record;
 use lacuna::encoder::{Baseline as Known, ResNetEncoder, Spread, Window};
 use lacuna::file::{Format, parse};
 use lacuna::lfr::{Baseline, Block, Scales, Structure};
-use lacuna::plugins::systems::MassSpringDamper;
-use lacuna::prelude::*;
 use lacuna::system::System;
 use lacuna::train::{Arithmetic, Augmented, MultipleShooting, Shooting};
 use serde_json::json;
+use without_adjoint::WithoutAdjoint;
 
 const SECTIONS: usize = 3000;
 const LENGTH: usize = 200;
@@ -38,34 +39,6 @@ const LENGTH: usize = 200;
 /// 420 weights of the learned part forward and four times on the way back (2.5 thousand),
 /// its 32 tanh (0.8), Runge-Kutta forward (1.3), again and back (3.3).
 const FLOP_PER_SAMPLE: f64 = 7.9e3;
-
-/// The bundled physics without its own adjoint: what a user's model is.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-struct Generic(MassSpringDamper);
-
-impl Physics for Generic {
-    fn signals(&self) -> Signals {
-        Physics::signals(&self.0)
-    }
-    #[inline(always)]
-    fn derive<R: Real>(&self, theta: &[R], derived: &mut [R]) {
-        self.0.derive(theta, derived);
-    }
-    #[inline(always)]
-    fn derivative<R: Real>(&self, at: &At<R>, dx: &mut [R]) {
-        self.0.derivative(at, dx);
-    }
-    #[inline(always)]
-    fn output<R: Real>(&self, at: &At<R>, y: &mut [R]) {
-        Physics::output(&self.0, at, y);
-    }
-    #[inline(always)]
-    fn coordinates<R: Real>(&self, at: &At<R>, z: &mut [R]) {
-        Physics::coordinates(&self.0, at, z);
-    }
-}
-
-lacuna::register!(StateSpaceModel for Generic, "bench_generic", "for measurements");
 
 /// The same physics typed as equations.
 const EQUATIONS: &str = r#"
@@ -92,7 +65,7 @@ parameters = [
 
 fn system(kind: &str) -> System {
     match kind {
-        "generic" => System::new(Generic(record::model(0.05)), record::sampling()),
+        "generic" => System::new(WithoutAdjoint(record::model(0.05)), record::sampling()),
         "equations" => {
             let mut system = parse(EQUATIONS, "equations", Format::Toml).unwrap();
             system.sampling = record::sampling();
