@@ -2,9 +2,11 @@
 
 use std::collections::HashSet;
 
+use super::adjoint::adjoint;
 use super::error::EquationsError;
 use super::expression::Operator;
 use super::graph::{Graph, Id, Term};
+use super::march::Whole;
 use super::names::Names;
 use super::parse::parse;
 use super::problem::{Problem, Role};
@@ -26,6 +28,8 @@ pub struct Compiled {
     pub output: Program,
     /// Own coordinates.
     pub coordinates: Program,
+    /// A whole sample, where there is a way back.
+    pub whole: Option<Whole>,
 }
 
 /// Reads a table.
@@ -45,14 +49,21 @@ pub fn compile(table: &Table) -> Result<Compiled, Vec<EquationsError>> {
     if !builder.errors.is_empty() {
         return Err(builder.errors);
     }
+    let back = adjoint(&mut builder.graph, &laws, laws.len());
     let graph = &builder.graph;
-    let derived = graph.derived(&[entered.as_slice(), &outputs, &coordinates].concat());
+    let there = back.as_deref().unwrap_or_default();
+    let derived = graph.derived(&[entered.as_slice(), &outputs, &coordinates, there].concat());
+    let whole = back.map(|back| Whole {
+        laws: Program::of(graph, &derived, &laws),
+        back: Program::of(graph, &derived, &back),
+    });
     Ok(Compiled {
         signals: signals(table, graph, &laws, &outputs, &coordinates).deriving(derived.len()),
         derived: Program::of(graph, &[], &derived),
         derivative: Program::of(graph, &derived, &entered),
         output: Program::of(graph, &derived, &outputs),
         coordinates: Program::of(graph, &derived, &coordinates),
+        whole: whole.filter(|whole| !whole.laws.is_timed() && !whole.back.is_timed()),
     })
 }
 

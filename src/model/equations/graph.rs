@@ -24,6 +24,8 @@ pub enum Term {
     Input(usize),
     /// What enters own channel number.
     Channel(usize),
+    /// What the derivative along law number is worth, on the way back.
+    Weight(usize),
     /// -a.
     Negative(Id),
     /// a + b.
@@ -49,7 +51,8 @@ impl Term {
             | Self::Theta(_)
             | Self::State(_)
             | Self::Input(_)
-            | Self::Channel(_) => [None, None],
+            | Self::Channel(_)
+            | Self::Weight(_) => [None, None],
             Self::Negative(a) | Self::Call(_, a) => [Some(a), None],
             Self::Add(a, b)
             | Self::Subtract(a, b)
@@ -97,7 +100,9 @@ impl Graph {
         }
         self.still.push(match term {
             Term::Constant(_) | Term::Theta(_) => true,
-            Term::Time | Term::State(_) | Term::Input(_) | Term::Channel(_) => false,
+            Term::Time | Term::State(_) | Term::Input(_) | Term::Channel(_) | Term::Weight(_) => {
+                false
+            }
             _ => term.parts().into_iter().flatten().all(|part| self.is_still(part)),
         });
         self.terms.push(term);

@@ -8,12 +8,14 @@
 //! once (`graph`), and what each question needs of it becomes a list of instructions
 //! (`program`) that a small machine runs for 64 lanes at a time (`run`).
 
+mod adjoint;
 mod build;
 mod error;
 mod expression;
 mod function;
 mod graph;
 mod hint;
+mod march;
 mod names;
 mod parse;
 mod problem;
@@ -27,7 +29,7 @@ mod token;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Ask, Block, Call, Fault, Law, Signals};
+use super::{Ask, Block, Call, Fault, Law, MarchCall, Signals};
 use build::{Compiled, compile};
 
 pub use error::{EquationsError, Located};
@@ -157,6 +159,14 @@ impl Law for Equations {
             Call::Dual64(block, out) => self.run(ask, block, out),
             Call::Dual32(block, out) => self.run(ask, block, out),
         }
+    }
+
+    fn march(&self, call: MarchCall<'_>) -> bool {
+        let whole = self.compiled.as_ref().ok().and_then(|compiled| compiled.whole.as_ref());
+        whole.is_some_and(|whole| match call {
+            MarchCall::F64(march) => march::march(whole, march),
+            MarchCall::F32(march) => march::march(whole, march),
+        })
     }
 
     fn packs(&self) -> usize {

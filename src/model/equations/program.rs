@@ -45,6 +45,8 @@ pub enum List {
     Inputs,
     /// Own channels.
     Channels,
+    /// Weights of the way back.
+    Weights,
     /// Registers.
     Registers,
     /// The answer.
@@ -52,7 +54,7 @@ pub enum List {
 }
 
 /// How many lists there are.
-pub const LISTS: usize = 8;
+pub const LISTS: usize = 9;
 
 /// An entry of a list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -137,6 +139,11 @@ impl Program {
         &self.steps
     }
 
+    /// Whether the steps look at the time, which comes after the numbers.
+    pub fn is_timed(&self) -> bool {
+        self.lengths[List::Constants as usize] > self.constants.len()
+    }
+
     /// How many entries of each list the steps need at most.
     pub fn lengths(&self) -> &[usize; LISTS] {
         &self.lengths
@@ -205,6 +212,7 @@ impl Maker {
             Term::State(i) => return self.places[id] = at(List::States, i),
             Term::Input(i) => return self.places[id] = at(List::Inputs, i),
             Term::Channel(i) => return self.places[id] = at(List::Channels, i),
+            Term::Weight(i) => return self.places[id] = at(List::Weights, i),
             Term::Negative(_) => Code::Negative,
             Term::Add(..) => Code::Add,
             Term::Subtract(..) => Code::Subtract,

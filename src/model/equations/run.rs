@@ -58,14 +58,14 @@ pub fn run<R: Stored>(program: &Program, answer: usize, block: &Block<'_, R>, ou
     });
 }
 
-/// One of the eight lists in memory.
+/// One of the nine lists in memory.
 #[derive(Clone, Copy)]
-struct Memory<R> {
+pub(super) struct Memory<R> {
     /// Values there are.
-    length: usize,
-    first: *mut R,
+    pub length: usize,
+    pub first: *mut R,
     /// Values from one entry to the next, and from one pack to the next.
-    strides: (usize, usize),
+    pub strides: (usize, usize),
 }
 
 impl<R> Memory<R> {
@@ -78,14 +78,14 @@ impl<R> Memory<R> {
 
     /// Whether `entries` of `packs` packs are there.
     #[inline(always)]
-    fn holds(&self, entries: usize, packs: usize) -> bool {
+    pub fn holds(&self, entries: usize, packs: usize) -> bool {
         let (entry, pack) = self.strides;
         entries == 0 || packs == 0 || (entries - 1) * entry + (packs - 1) * pack < self.length
     }
 
     /// An entry of pack number `pack`, and how far it is from pack to pack.
     #[inline(always)]
-    fn at(&self, entry: usize, pack: usize) -> (*mut R, usize) {
+    pub fn at(&self, entry: usize, pack: usize) -> (*mut R, usize) {
         (self.first.wrapping_add(entry * self.strides.0 + pack * self.strides.1), self.strides.1)
     }
 }
@@ -108,6 +108,7 @@ per_lanes! {
             Memory::by_pack(block.x, n.x),
             Memory::by_pack(block.u, n.u),
             Memory::by_pack(block.w, n.w),
+            Memory::by_pack(&[], 0),
             Memory { length: registers.len(), first: registers.as_mut_ptr(), strides: (PACKS, 1) },
             Memory { length: out.len(), first: out.as_mut_ptr(), strides: (1, answer) },
         ];
@@ -143,7 +144,11 @@ per_lanes! {
 ///
 /// Of each pointer and stride, `packs` values must be there.
 #[inline(always)]
-unsafe fn execute<R: Real>(code: Code, [a, b, c, to]: [(*mut R, usize); 4], packs: usize) {
+pub(super) unsafe fn execute<R: Real>(
+    code: Code,
+    [a, b, c, to]: [(*mut R, usize); 4],
+    packs: usize,
+) {
     macro_rules! at {
         ($pack:expr, $to:expr, [$($operand:ident: $from:expr),*], $result:expr) => {
             // SAFETY: the caller's promise.
