@@ -29,8 +29,6 @@ pub use told::{LinearParameter, Mode};
 
 /// A number within so many standard errors of 0 is taken for 0.
 const SEEN: f64 = 3.0;
-/// Share of the mean square that leaving such numbers out may cost.
-const MISSED: f64 = 0.05;
 /// Samples by which starts are told apart.
 const FIRST: usize = 20_000;
 
@@ -68,8 +66,7 @@ pub struct LinearEstimate {
 /// beside them, over several horizons; the best simulation counts), B, D, the offset and the
 /// initial states from linear least squares, and everything from the least simulation error in
 /// the end (McKelvey, Helmersson and Ribarits, Automatica 40, 2004). Entries of D and offsets
-/// within three standard errors of 0 are left out where that costs less than 5 % of the mean
-/// square. Every output counts by its own spread.
+/// within three standard errors of 0 are left out. Every output counts by its own spread.
 ///
 /// Without `order`: with past inputs as instruments and the noise made white, as many states
 /// are proposed as singular values stand above 1.2 times the largest one that pure noise would
@@ -209,11 +206,6 @@ fn told_apart(signals: &Signals, found: &mut Found, watch: &dyn Watch) -> (Fitte
     let Some(start) = start else { return (found.fitted.1.clone(), numbers) };
     let (model, fitted, steps) = refine::refine(signals, start, &free, watch);
     found.steps += steps;
-    // slow residuals make standard errors wide; what is missed was there nevertheless
-    let square = |fitted: &Fitted| rms(&fitted.residuals).powi(2);
-    if square(&fitted) > (1.0 + MISSED) * square(&found.fitted.1) {
-        return (found.fitted.1.clone(), numbers);
-    }
     let fitted = (model, fitted);
     let mut numbers = told::numbers(signals, &fitted);
     // what was left out is 0 to the last bit
