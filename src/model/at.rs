@@ -2,14 +2,14 @@
 
 /// Everything a law may look at in one instant.
 ///
-/// Slices keep the order of declaration in [`Signals`]. The methods hand out arrays, so
+/// Slices keep the order of declaration in [`Signals`](super::Signals). The methods hand out arrays, so
 /// that the textbook's letters can be written on the left:
 /// `let &[mass, damping] = at.parameters();`
 #[derive(Debug, Clone, Copy)]
 pub struct At<'a, R> {
     /// Parameters.
     pub theta: &'a [R],
-    /// What [`Physics::derive`] made of them.
+    /// What [`Physics::derive`](super::Physics::derive) made of them.
     pub derived: &'a [R],
     /// States.
     pub x: &'a [R],
