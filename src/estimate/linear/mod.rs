@@ -85,7 +85,7 @@ pub struct LinearEstimate {
 ///
 /// # Example
 ///
-/// ```no_run
+/// ```
 /// use lacuna::data::Record;
 /// use lacuna::estimate::linear;
 ///
@@ -95,8 +95,9 @@ pub struct LinearEstimate {
 ///     y.push(0.9 * y[k] + 0.5 * u[k]);
 /// }
 /// let record = Record::new(0.1).input("u", u)?.output("y", y)?;
-/// let found = linear(&[record], Some(1))?;
-/// println!("{:?}", found.modes);
+/// let found = linear(&[record], None)?;
+/// assert_eq!(found.order, 1);
+/// assert!((found.modes[0].pole[0] - 0.9).abs() < 1e-6);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn linear(records: &[Record], order: Option<usize>) -> Result<LinearEstimate, LinearError> {

@@ -14,6 +14,8 @@ const WORTH: f64 = 0.01;
 const CLEARLY: f64 = 0.05;
 /// What each number more has to gain, in units of what it gains from noise.
 const PRICE: f64 = 4.0;
+/// Root mean square over the outputs' spread below which what is left is rounding.
+const EXACT: f64 = 1e-9;
 /// Likeness of neighbouring residuals that is allowed for. More is hardly noise but what a
 /// linear model gets wrong.
 const ALIKE: f64 = 0.9;
@@ -99,7 +101,8 @@ impl Search<'_> {
     }
 
     /// Whether a model of higher order is worth its numbers: it has to lower the mean square by
-    /// `share`, and by [`PRICE`] times what noise of this colour gives to each of them.
+    /// `share`, and by [`PRICE`] times what noise of this colour gives to each of them. Rounding
+    /// is not worth a state.
     fn worth(&self, low: &Found, high: &Found, share: f64) -> bool {
         let r = &high.fitted.1.residuals;
         // outputs stand side by side: the next sample of the same one is `ny` further
@@ -107,6 +110,6 @@ impl Search<'_> {
         let alike = (dot(&r[..ahead.len()], ahead) / dot(r, r)).clamp(0.0, ALIKE);
         let numbers = (high.order - low.order) * (self.signals.nu + self.signals.ny);
         let noise = numbers as f64 * (1.0 + alike) / (1.0 - alike) / r.len().max(1) as f64;
-        low.square() > high.square() * (1.0 + share + PRICE * noise)
+        low.square() > EXACT * EXACT && low.square() > high.square() * (1.0 + share + PRICE * noise)
     }
 }
