@@ -26,3 +26,11 @@ pub use noise_study::{Level, NoiseStudy};
 pub use result::{Quartiles, StudyResult, Summary};
 
 pub(crate) use monte_carlo::Inputs;
+
+/// What shard `i` of `n`, counted from 1, does of some work: every n-th piece.
+fn shard<T>(work: Vec<T>, i: usize, n: usize) -> Result<Vec<T>, StudyError> {
+    if i == 0 || i > n {
+        return Err(StudyError::setting("shard", format!("{i}/{n}"), "1/n up to n/n"));
+    }
+    Ok(work.into_iter().skip(i - 1).step_by(n).collect())
+}

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Job, NoiseStudy, StudyError};
+use super::{Job, NoiseStudy, StudyError, shard};
 use crate::data::Record;
 use crate::encoder::EncoderInitialiser;
 use crate::system::System;
@@ -112,11 +112,7 @@ impl MonteCarlo {
     ///
     /// If there is no such shard.
     pub fn share(&self, i: usize, n: usize) -> Result<Vec<Job>, StudyError> {
-        if i == 0 || i > n {
-            let found = format!("{i}/{n}");
-            return Err(StudyError::setting("shard", found, "1/n up to n/n"));
-        }
-        Ok(self.jobs().into_iter().skip(i - 1).step_by(n).collect())
+        shard(self.jobs(), i, n)
     }
 
     /// Tells studies apart that must not be mixed.

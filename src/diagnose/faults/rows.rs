@@ -10,6 +10,10 @@ const BEYOND: f64 = 6.0;
 const FALLS: usize = 3;
 /// Share of different values beyond which a scale is fine.
 const FINE: f64 = 0.9;
+/// Expected number of values that a record meets as often by chance: a fall is below.
+const CHANCE: f64 = 1e-4;
+/// Samples on either side of a value that tell how dense the readings lie there.
+const NEAR: usize = 50;
 /// Different values that a reading has at least, to be judged by equal ones.
 const VALUES: usize = 30;
 /// Equal readings in a row that are one that stands still, at least.
@@ -59,17 +63,44 @@ fn dropouts(y: &[f64]) -> Option<(f64, Vec<usize>)> {
     };
     // a fine scale does not meet a value inside its range time and again by chance
     let fine = different(y) as f64 > FINE * y.len() as f64;
-    let (low, high) = range(y);
-    let counts = |s: &&Stretch| fell(s) || fine && s.value > low && s.value < high;
-    let mut fallen: Vec<&Stretch> = all.iter().filter(counts).collect();
-    fallen.sort_by(|a, b| a.value.total_cmp(&b.value));
-    let best = fallen
-        .chunk_by(|a, b| a.value == b.value)
-        .filter(|same| same.len() >= FALLS)
-        .max_by_key(|same| same.len())?;
+    let (sorted, (low, high)) = (sorted(y), range(y));
+    let often = |same: &[&Stretch]| {
+        let value = same[0].value;
+        fine && value > low && value < high && by_chance(&sorted, value, same.len()) < CHANCE
+    };
+    let mut all: Vec<&Stretch> = all.iter().collect();
+    all.sort_by(|a, b| a.value.total_cmp(&b.value));
+    let fallen = all.chunk_by(|a, b| a.value == b.value).filter_map(|same| {
+        let fell: Vec<&Stretch> = if often(same) {
+            same.to_vec()
+        } else {
+            same.iter().copied().filter(|s| fell(s)).collect()
+        };
+        (fell.len() >= FALLS).then_some(fell)
+    });
+    let best = fallen.max_by_key(Vec::len)?;
     let mut rows: Vec<usize> = best.iter().flat_map(|s| s.from..s.to).collect();
     rows.sort_unstable();
     (rows.len() < (NATURE * y.len() as f64) as usize).then_some((best[0].value, rows))
+}
+
+/// How many values a series is expected to meet `count` times, as it lies near `value` and as
+/// finely as it is written.
+fn by_chance(sorted: &[f64], value: f64, count: usize) -> f64 {
+    let steps = sorted.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 0.0);
+    let step = steps.fold(f64::INFINITY, f64::min);
+    let (from, to) =
+        (sorted.partition_point(|v| *v < value), sorted.partition_point(|v| *v <= value));
+    let (low, high) = (from.saturating_sub(NEAR), (to + NEAR).min(sorted.len()));
+    let (others, width) = ((from - low) + (high - to), sorted[high - 1] - sorted[low]);
+    let mean = others as f64 * step / width.max(step);
+    // the chance that at least count - 1 more samples lie on a sample's value (Poisson)
+    let (mut term, mut tail) = ((-mean).exp(), 0.0);
+    for k in 1..count + 100 {
+        tail += if k >= count { term } else { 0.0 };
+        term *= mean / k as f64;
+    }
+    sorted.len() as f64 * tail
 }
 
 fn range(y: &[f64]) -> (f64, f64) {
@@ -136,10 +167,15 @@ pub(crate) fn strike(
     (mended, faults)
 }
 
-/// How many different values a series has.
-fn different(values: &[f64]) -> usize {
+fn sorted(values: &[f64]) -> Vec<f64> {
     let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     sorted.sort_by(f64::total_cmp);
+    sorted
+}
+
+/// How many different values a series has.
+fn different(values: &[f64]) -> usize {
+    let mut sorted = sorted(values);
     sorted.dedup();
     sorted.len()
 }
@@ -147,8 +183,7 @@ fn different(values: &[f64]) -> usize {
 /// Step of a converter that rounds to less than `VALUES` or so steps per standard deviation:
 /// all values are whole multiples of it.
 pub(crate) fn converter_step(y: &[f64]) -> Option<f64> {
-    let mut values: Vec<f64> = y.iter().copied().filter(|v| v.is_finite()).collect();
-    values.sort_by(f64::total_cmp);
+    let values = sorted(y);
     let steps = values.windows(2).map(|w| w[1] - w[0]);
     let spread = deviation(y);
     // neighbours that rounding of the file's decimals makes differ are the same value
@@ -180,6 +215,18 @@ mod tests {
         let rows = [100, 101, 300, 480, 481, 482, 777];
         rows.iter().for_each(|&k| y[k] = 0.0);
         assert_eq!(dropouts(&y), Some((0.0, rows.to_vec())));
+    }
+
+    #[test]
+    fn equal_readings_of_few_decimals_are_no_dropouts() {
+        let (_, y) = noisy(3000);
+        let mut y: Vec<f64> = y.iter().map(|y| (y * 2e4).round() / 2e4).collect();
+        let often = |y: &[f64]| sorted(y).chunk_by(|a, b| a == b).any(|same| same.len() >= FALLS);
+        assert!(often(&y), "nothing to be mistaken for");
+        assert_eq!(dropouts(&y), None);
+        let rows: Vec<usize> = (0..12).map(|k| 100 + 200 * k).collect();
+        rows.iter().for_each(|&k| y[k] = 1.5);
+        assert_eq!(dropouts(&y), Some((1.5, rows)));
     }
 
     #[test]

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Exam;
 use crate::data::Random;
-use crate::study::StudyError;
+use crate::study::{StudyError, shard};
 
 /// What is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -90,11 +90,7 @@ impl Exam {
     ///
     /// If there is no such shard.
     pub fn share(&self, i: usize, n: usize) -> Result<Vec<Case>, StudyError> {
-        if i == 0 || i > n {
-            let found = format!("{i}/{n}");
-            return Err(StudyError::setting("shard", found, "1/n up to n/n"));
-        }
-        Ok(self.cases()?.into_iter().skip(i - 1).step_by(n).collect())
+        shard(self.cases()?, i, n)
     }
 
     /// All cases under the same conditions.

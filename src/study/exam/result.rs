@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::{Hit, Kind, Marks};
-use crate::study::StudyError;
+use crate::study::{Quartiles, StudyError};
 
 /// All marks of an exam, in the order of its cases.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,10 +67,8 @@ fn share(yes: impl IntoIterator<Item = bool>) -> Option<f64> {
     (all > 0.0).then(|| true_ones / all)
 }
 
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len().checked_sub(1)? / 2;
-    Some(0.5 * (values[middle] + values[values.len() / 2]))
+fn median(values: Vec<f64>) -> Option<f64> {
+    Quartiles::of(values).map(|of| of.median)
 }
 
 impl Tally {
