@@ -95,8 +95,9 @@ impl<'a> Diagnosis<'a> {
     }
 
     fn check_names(&self) -> Result<(), DiagnoseError> {
-        let known: Vec<&str> =
-            crate::register::effects().iter().map(|(card, _)| card.name).collect();
+        let registered = crate::register::effects().into_iter().map(|(card, _)| card.name);
+        let written = self.system.written.iter().map(crate::effect::WrittenEffect::name);
+        let known: Vec<&str> = registered.chain(written).collect();
         for name in self.allowed.only.iter().chain(&self.allowed.without) {
             if !known.contains(&name.as_str()) {
                 return Err(DiagnoseError::NoEffect { name: name.clone() });

@@ -6,7 +6,7 @@ use super::candidate::{Candidate, Preference, Wire};
 use super::nominal::Nominal;
 use super::problem::{Model, Problem};
 use crate::effect::{
-    CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, SignRule, View, curve,
+    CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, Shape, SignRule, View, curve,
 };
 use crate::register;
 use crate::system::{Origin, Route};
@@ -55,8 +55,10 @@ pub(crate) fn library(
     let mut builder = Builder { problem, nominal, lines, found: vec![] };
     let groups = builder.channels();
     let sources = builder.sources();
-    for (card, shape) in register::effects() {
-        if !allowed.effect(card.name) {
+    let registered = register::effects().into_iter().map(|(card, shape)| (card.name, shape));
+    let written = problem.system.written.iter().map(|own| (own.name(), own.boxed()));
+    for (name, shape) in registered.chain(written) {
+        if !allowed.effect(name) {
             continue;
         }
         let declared = shape.card();
@@ -64,16 +66,16 @@ pub(crate) fn library(
             continue;
         }
         if declared.places.parameter {
-            builder.parameters(card.name, shape.as_ref(), &declared, model, allowed);
+            builder.parameters(name, shape.as_ref(), &declared, model, allowed);
         }
-        builder.paths(card.name, shape.as_ref(), &declared);
+        builder.paths(name, shape.as_ref(), &declared);
         if declared.places.channel {
             for group in &groups {
-                builder.channel_paths(card.name, shape.as_ref(), &declared, group, &sources);
+                builder.channel_paths(name, shape.as_ref(), &declared, group, &sources);
             }
         }
         if declared.places.beside {
-            builder.beside(card.name, shape.as_ref(), &declared);
+            builder.beside(name, shape.as_ref(), &declared);
         }
     }
     builder.found.into_iter().map(Arc::new).collect()

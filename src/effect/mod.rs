@@ -6,14 +6,20 @@
 
 mod card;
 mod curve;
+mod definition;
+mod error;
 mod law;
 mod search;
 mod unit;
 mod view;
+mod written;
 
 pub use card::{EffectCard, Knob, Mechanism, Named, Needs, Places, Role, SignRule};
 pub use curve::curve;
+pub use definition::{DefinedParameter, DefinedRole, Definition};
+pub use error::{DefinitionError, DefinitionProblem};
 pub use law::{CandidateEffect, Effect, EffectBlock, EffectCall, Felt, Shape};
 pub use search::Search;
 pub use unit::UnitRule;
 pub use view::View;
+pub use written::WrittenEffect;

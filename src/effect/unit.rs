@@ -21,6 +21,8 @@ pub enum UnitRule {
     Second,
     /// rad/s.
     RadianPerSecond,
+    /// As its author states it.
+    Stated(&'static str),
 }
 
 impl UnitRule {
@@ -47,6 +49,7 @@ impl UnitRule {
             Self::Inertia => over(&format!("{channel} s^2"), coordinate),
             Self::Second => "s".into(),
             Self::RadianPerSecond => "rad/s".into(),
+            Self::Stated(unit) => unit.into(),
         }
     }
 }

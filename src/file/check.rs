@@ -5,6 +5,7 @@ use serde::Deserialize;
 use super::document::Document;
 use super::error::FileError;
 use super::node::{Node, Value};
+use super::written::{declared, placed, rest};
 use crate::fault::Explain;
 use crate::model::StateSpaceModel;
 use crate::model::equations::{Equations, Table};
@@ -27,8 +28,16 @@ struct Keys {
 
 /// Reads a system and checks that it can be simulated.
 pub fn system(document: &Document) -> Result<System, FileError> {
-    let Keys { sampling_time, integrator, hold, model, effects } = document.read()?;
-    let system = System { sampling: Sampling { sampling_time, integrator, hold }, model, effects };
+    let written = declared(document)?;
+    let keys = if written.is_empty() {
+        document.read()?
+    } else {
+        let keys: Keys = rest(document, &["effect", "effects"])?;
+        Keys { effects: placed(document, &written)?, ..keys }
+    };
+    let Keys { sampling_time, integrator, hold, model, effects } = keys;
+    let sampling = Sampling { sampling_time, integrator, hold };
+    let system = System { sampling, model, written, effects };
     faults(document, system.model.as_ref())?;
     match system.plan(sampling_time.unwrap_or(1.0)) {
         Ok(_) => Ok(system),

@@ -143,7 +143,12 @@ impl Document {
         }
     }
 
-    fn fault(&self, key: &str, at: Range<usize>, complaint: Complaint) -> FileError {
+    /// The place of some bytes, which stand at a key path.
+    pub(super) fn spot_of(&self, at: Range<usize>, key: &str) -> Spot {
+        self.source.spot(at, key)
+    }
+
+    pub(super) fn fault(&self, key: &str, at: Range<usize>, complaint: Complaint) -> FileError {
         let at = Box::new(self.source.spot(at, key));
         FileError::Value { at, complaint: Box::new(complaint) }
     }

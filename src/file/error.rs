@@ -4,6 +4,7 @@ use std::io;
 
 use super::complaint::Complaint;
 use super::source::Spot;
+use crate::effect::{DefinitionError, DefinitionProblem};
 use crate::fault::{Explain, Kind, Place, nearest};
 use crate::model::Fault;
 use crate::model::equations::EquationsError;
@@ -62,6 +63,14 @@ pub enum FileError {
         /// How many further faults there are.
         more: usize,
     },
+    /// An effect that the file declares.
+    #[error("{}{}", .at.place.lead(), .error.problem)]
+    Definition {
+        /// File, line, column and key path; the column is that of the character.
+        at: Box<Spot>,
+        /// What is wrong.
+        error: Box<DefinitionError>,
+    },
     /// A value that the model itself refuses.
     #[error("{}found {}, expected {}", .at.place.lead(), .fault.found, .fault.expected)]
     Model {
@@ -110,6 +119,7 @@ impl FileError {
             | Self::Syntax { at, .. }
             | Self::Value { at, .. }
             | Self::Equations { at, .. }
+            | Self::Definition { at, .. }
             | Self::Model { at, .. }
             | Self::System { at, .. }
             | Self::Infinite { at, .. }
@@ -161,6 +171,10 @@ impl FileError {
                 _ => None,
             },
             Self::Equations { error, .. } => error.problem.near(),
+            Self::Definition { error, .. } => match &error.problem {
+                DefinitionProblem::Expression(problem) => problem.near(),
+                _ => None,
+            },
             Self::System { error, .. } => match error.as_ref() {
                 SystemError::NoChannel { into: wanted, known, .. }
                 | SystemError::NoCoordinate { of: wanted, known, .. } => {
@@ -196,6 +210,7 @@ impl Explain for FileError {
             Self::Syntax { .. } => "see https://toml.io, or https://json.org for a .json file",
             Self::Value { complaint, .. } => return complaint_hint(complaint),
             Self::Equations { error, .. } => return error.hint(),
+            Self::Definition { error, .. } => return error.hint(),
             Self::Model { .. } => return None,
             Self::System { error, .. } => return error.hint(),
             Self::Infinite { .. } => "leave a bound that does not exist out",

@@ -24,6 +24,13 @@ pub fn model_file(tables: &Map<String, Value>, header: &[String]) -> String {
                     table(&mut text, &format!("model.{}", self::key(name)), value);
                 }
             }
+            ("effect", Value::Object(declared)) => {
+                for (name, value) in declared {
+                    let Value::Object(entries) = value else { continue };
+                    line_of(&mut text, format_args!("\n[effect.{}]", self::key(name)));
+                    entries.iter().for_each(|(key, value)| entry(&mut text, key, value));
+                }
+            }
             ("effects", Value::Array(effects)) => effects.iter().for_each(|entry| {
                 effect(&mut text, entry);
             }),

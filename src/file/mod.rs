@@ -21,6 +21,7 @@ mod read;
 mod source;
 mod toml;
 mod write;
+mod written;
 
 use std::path::Path;
 

@@ -127,6 +127,14 @@ fn tables(system: &System) -> Result<Map<String, Value>, FileError> {
         tables.insert("hold".into(), value(&sampling.hold, "hold")?);
     }
     tables.insert("model".into(), value(&system.model, "model")?);
+    if !system.written.is_empty() {
+        let mut declared = Map::new();
+        for written in &system.written {
+            let key = format!("effect.{}", written.name());
+            declared.insert(written.name().into(), value(written.definition(), &key)?);
+        }
+        tables.insert("effect".into(), Value::Object(declared));
+    }
     if !system.effects.is_empty() {
         tables.insert("effects".into(), value(&system.effects, "effects")?);
     }

@@ -25,6 +25,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use crate::effect::WrittenEffect;
 use crate::model::{Signals, StateSpaceModel, copied};
 use crate::real::F64x8;
 
@@ -47,6 +48,12 @@ pub struct System {
     pub sampling: Sampling,
     /// The model itself.
     pub model: Box<dyn StateSpaceModel>,
+    /// Effects that its file declares, whether or not they are used in it.
+    ///
+    /// [`file`](crate::file) reads and writes them, since what an entry of `effects` means
+    /// depends on them.
+    #[serde(skip)]
+    pub written: Vec<WrittenEffect>,
     /// What has been added to it.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub effects: Vec<Placed>,
@@ -59,6 +66,7 @@ impl Clone for System {
             sampling: self.sampling,
             // the contract test copies every registered model through its serialised form
             model: model.expect("a model survives its own serialisation"),
+            written: self.written.clone(),
             effects: self.effects.clone(),
         }
     }
@@ -67,7 +75,7 @@ impl Clone for System {
 impl System {
     /// A system without effects.
     pub fn new(model: impl StateSpaceModel + 'static, sampling: Sampling) -> Self {
-        Self { sampling, model: Box::new(model), effects: vec![] }
+        Self { sampling, model: Box::new(model), written: vec![], effects: vec![] }
     }
 
     /// What the model says about itself.

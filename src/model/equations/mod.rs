@@ -12,6 +12,7 @@ mod adjoint;
 mod build;
 mod error;
 mod expression;
+mod formula;
 mod function;
 mod graph;
 mod hint;
@@ -34,9 +35,11 @@ use build::{Compiled, compile};
 
 pub use error::{EquationsError, Located};
 pub use expression::{Expression, Node, Operator};
+pub(crate) use formula::Formula;
 pub use function::{Function, Pair};
 pub use parse::{DEPTH, parse};
 pub use problem::{Expected, Problem, Role};
+pub(crate) use run::Stored;
 pub use table::{Channel, Coordinate, Entry, Input, Output, Parameter, State, Table, Variable};
 pub use token::Token;
 

@@ -219,5 +219,6 @@ fn off(truth: &System, case: &Case, seed: u64) -> Result<System, StudyError> {
         .collect();
     let model = with_parameters(truth.model.as_ref(), &changes)
         .map_err(|e| StudyError::setting("parameter_error", e, "values that the model takes"))?;
-    Ok(System { sampling: truth.sampling, model, effects: truth.effects.clone() })
+    let (written, effects) = (truth.written.clone(), truth.effects.clone());
+    Ok(System { sampling: truth.sampling, model, written, effects })
 }
