@@ -39,7 +39,7 @@ impl Search<'_, '_> {
 
     /// Whether the later of two causes makes the earlier one, a compromise, superfluous.
     pub(super) fn second_suffices(&self, both: &Trial) -> bool {
-        let second = self.fitted(both.model.without(0));
+        let second = self.fitted(both.model.without(self.known(&both.model)));
         self.present(&second).is_some_and(|y| {
             self.score(&y, &both.y) < AS_GOOD && dependence(self.problem, self.nominal, &y) < 2.0
         })

@@ -16,7 +16,8 @@ const BEAM: usize = 5;
 const LEADING: usize = 60;
 
 impl Search<'_, '_> {
-    /// Expands other first causes too; the best pair overall, if it beats one cause alone.
+    /// Expands other first causes too; all pairs with the first cause of the best one, best
+    /// first, if it beats one cause alone.
     pub(super) fn pairs(
         &mut self,
         model: &Model,
@@ -24,8 +25,8 @@ impl Search<'_, '_> {
         previous: &[Trial],
         trials: &[Trial],
         candidates: &[Arc<Candidate>],
-    ) -> Option<(Arc<Candidate>, Vec<Trial>)> {
-        let first = model.added.first().map(|a| a.cause.clone());
+    ) -> Option<Vec<Trial>> {
+        let first = model.added.get(self.known(model)).map(|a| a.cause.clone());
         let is_first = |cause: &Candidate| first.as_ref().is_some_and(|f| cause.same_cause(f));
         let base = self.problem.mean_square(before, Part::Choose);
         let sibling = |t: &Trial| {
@@ -60,21 +61,24 @@ impl Search<'_, '_> {
         }
         pool.sort_by(|a, b| a.held.total_cmp(&b.held));
         let best = pool.first()?;
-        let new_first = best.model.added.first()?.cause.clone();
+        let new_first = best.model.added.get(self.known(&best.model))?.cause.clone();
         if !self.accepts(before, &best.y, best.weak) || is_first(&new_first) {
             return None;
         }
-        let same_first =
-            |t: &Trial| t.model.added.first().is_some_and(|a| a.cause.same_cause(&new_first));
-        let pool = pool.iter().filter(|t| same_first(t)).cloned().collect();
-        Some((new_first, pool))
+        let before_last = best.model.added.len() - 1;
+        let firsts = best.model.added[..before_last].to_vec();
+        let same_firsts = |t: &Trial| {
+            t.model.added.len() == before_last + 1
+                && t.model.added.iter().zip(&firsts).all(|(a, b)| a.cause.same_cause(&b.cause))
+        };
+        Some(pool.iter().filter(|t| same_firsts(t)).cloned().collect())
     }
 }
 
 /// Whether the first cause kept its size when a second one joined it: one that only stood in
 /// for two others does not.
-pub(super) fn stayed(alone: &Model, joined: &Model) -> bool {
-    let (Some(a), Some(b)) = (alone.added.first(), joined.added.first()) else { return true };
+pub(super) fn stayed(alone: &Model, joined: &Model, first: usize) -> bool {
+    let (Some(a), Some(b)) = (alone.added.get(first), joined.added.get(first)) else { return true };
     a.cause.linear.iter().all(|&i| (a.knobs[i] - b.knobs[i]).abs() < STAYED * a.knobs[i].abs())
 }
 

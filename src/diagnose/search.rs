@@ -46,6 +46,8 @@ pub(crate) struct Found {
     pub dependence: f64,
     /// Samples flagged as spikes, per output.
     pub spikes: Vec<Vec<usize>>,
+    /// How many of the causes, the first ones, were known before the search.
+    pub known: usize,
     /// Whether the most causes allowed were reached.
     pub full: bool,
 }
@@ -61,6 +63,8 @@ pub(crate) struct Search<'a, 'b> {
     /// Share of the whole work that this search is, from and to.
     pub share: (f64, f64),
     pub(super) accept: f64,
+    /// What the instruments cannot show, in every model from the start.
+    limits: Vec<Arc<Candidate>>,
 }
 
 impl<'a, 'b> Search<'a, 'b> {
@@ -72,7 +76,8 @@ impl<'a, 'b> Search<'a, 'b> {
         most: usize,
         watch: &'a dyn Watch,
     ) -> Self {
-        Self { problem, nominal, nuisance, allowed, most, watch, share: (0.0, 1.0), accept: ACCEPT }
+        let (share, limits) = ((0.0, 1.0), vec![]);
+        Self { problem, nominal, nuisance, allowed, most, watch, share, accept: ACCEPT, limits }
     }
 
     fn tell(&self, done: f64, doing: &str) {
@@ -118,7 +123,7 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Puts what the instruments cannot show into a model before anything is searched.
-    fn limited(&self, start: Model, slots: &mut Vec<Slot>) -> Model {
+    fn limited(&mut self, start: Model, slots: &mut Vec<Slot>) -> Model {
         let mut model = start;
         let outputs = self.problem.base.signals.outputs.clone();
         for (o, signal) in outputs.iter().enumerate().filter(|_| self.most > 0) {
@@ -129,11 +134,18 @@ impl<'a, 'b> Search<'a, 'b> {
             let candidates = library(self.problem, self.nominal, &model, vec![], self.allowed);
             if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
                 model = model.with(&cause, knobs);
+                self.limits.push(cause.clone());
                 let set = vec![(cause, 1.0)];
                 slots.push(Slot { set, others: vec![], score: ACCEPT_INDEPENDENT });
             }
         }
         model
+    }
+
+    /// How many of a model's causes, its first ones, were known before the search.
+    pub(super) fn known(&self, model: &Model) -> usize {
+        let is_known = |cause| self.limits.iter().any(|limit| Arc::ptr_eq(limit, cause));
+        model.added.iter().take_while(|added| is_known(&added.cause)).count()
     }
 
     /// Runs the search from a model to the end.
@@ -166,6 +178,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 break;
             }
             let mut before = self.present(&model)?;
+            let known = self.known(&model);
             if number > 0 && self.is_noise(&before) {
                 full = false;
                 break;
@@ -195,21 +208,24 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             if alone
                 || number == 1
-                    && model.added.len() == 1
+                    && model.added.len() == known + 1
                     && !trials.is_empty()
-                    && !(self.is_settled(&before, &trials[0]) && stayed(&model, &trials[0].model))
+                    && !(self.is_settled(&before, &trials[0])
+                        && stayed(&model, &trials[0].model, known))
                     && !self.second_suffices(&trials[0])
             {
                 self.tell(at + 0.6 * step, "looking at pairs");
                 let leading = shortlist(&candidates, [&first, &last]);
-                if let Some((better_first, pool)) =
-                    self.pairs(&model, &before, &previous, &trials, &leading)
-                {
-                    slots = vec![Slot {
-                        set: vec![(better_first, 1.0)],
-                        others: vec![],
-                        score: self.accept,
-                    }];
+                if let Some(pool) = self.pairs(&model, &before, &previous, &trials, &leading) {
+                    // what stands beside the last of each pair, a known limit too
+                    let others = pool[0].model.added.iter().rev().skip(1).rev();
+                    slots = others
+                        .map(|added| Slot {
+                            set: vec![(added.cause.clone(), 1.0)],
+                            others: vec![],
+                            score: self.accept,
+                        })
+                        .collect();
                     trials = pool;
                 }
             }
@@ -252,6 +268,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         self.tell(1.0, "done");
         let spikes = self.problem.spikes();
-        Some(Found { model, slots, first, last, dependence, spikes, full })
+        let known = self.known(&model);
+        Some(Found { model, slots, first, last, dependence, spikes, known, full })
     }
 }

@@ -69,6 +69,11 @@ fn moved_together(nuisance: &Nuisance, fitted: &Fitted, covariance: Option<&DMat
 }
 
 impl Finished {
+    /// Whether no cause was found but what was known before: limits of the instruments.
+    fn found_nothing(&self) -> bool {
+        self.fitted.model.added.len() <= self.found.known
+    }
+
     /// How much it takes: causes plus parameters moved.
     fn price(&self) -> usize {
         self.fitted.model.added.len() + self.moved.len().max(usize::from(self.moved_together))
@@ -109,7 +114,7 @@ impl Tracks<'_, '_> {
         });
         // nothing named, and yet what is left is not white: parameters that were fitted to
         // make up for a cause may hide it while they are held
-        let hidden = trusted.fitted.model.added.is_empty() && self.colour(&trusted.y) > COLOURED;
+        let hidden = trusted.found_nothing() && self.colour(&trusted.y) > COLOURED;
         let clean = settled && trusted.dependence < 3.0 && !hidden || left < SOLVED;
         let found = if clean {
             self.carried_over(&free, start, &trusted)
@@ -121,8 +126,8 @@ impl Tracks<'_, '_> {
             return Some((trusted, None));
         };
         let better = self.problem.better(&trusted.y, &free.y, Part::Choose);
-        let whiter = trusted.fitted.model.added.is_empty()
-            && !free.fitted.model.added.is_empty()
+        let whiter = trusted.found_nothing()
+            && !free.found_nothing()
             && self.colour(&free.y) < WHITER * self.colour(&trusted.y);
         let take_free = match better {
             b if b > WINS || whiter => true,
@@ -176,6 +181,7 @@ impl Tracks<'_, '_> {
             last: None,
             dependence: trusted.found.dependence,
             spikes,
+            known: trusted.found.known,
             full: false,
         })
     }
