@@ -91,7 +91,7 @@ pub fn all() -> Vec<Case> {
         Case {
             name: "rack_pinion",
             folder: "rack_pinion_friction",
-            baseline: Fitted(include_str!("../rack_pinion.toml")),
+            baseline: Known(include_str!("../rack_pinion.toml").into()),
             train: Rack,
             // there is one stroke and no other
             tests: vec![("the same stroke", Rack)],

@@ -39,13 +39,13 @@ impl Search<'_, '_> {
 
     /// Whether the later of two causes makes the earlier one, a compromise, superfluous.
     pub(super) fn second_suffices(&self, both: &Trial) -> bool {
-        let second = self.fitted(both.model.without(self.known(&both.model)));
+        let second = self.fitted(both.model.without(both.model.known()));
         self.present(&second).is_some_and(|y| {
             self.score(&y, &both.y) < AS_GOOD && dependence(self.problem, self.nominal, &y) < 2.0
         })
     }
 
-    fn is_white(&self, y: &[Vec<f64>]) -> bool {
+    pub(super) fn is_white(&self, y: &[Vec<f64>]) -> bool {
         let r = self.problem.residual(y, Part::All);
         let n = r.len() / self.problem.y.len();
         r.chunks(n).all(|r| whiteness(r).abs() < WHITE)
@@ -56,6 +56,14 @@ impl Search<'_, '_> {
         let score = self.score(a, b) - f64::from(u8::from(weak));
         let ((fit_a, held_a), (fit_b, held_b)) = (self.mean_squares(a), self.mean_squares(b));
         score >= self.bar(b) || score > 1.0 && held_b < STRONG * held_a && fit_b < STRONG * fit_a
+    }
+
+    /// Whether two causes together are as strong an improvement as two strong ones would be: what
+    /// is asked of a pair whose causes hide each other, and of which nothing else can be seen.
+    pub(super) fn is_doubly_strong(&self, a: &[Vec<f64>], b: &[Vec<f64>]) -> bool {
+        let ((fit_a, held_a), (fit_b, held_b)) = (self.mean_squares(a), self.mean_squares(b));
+        let most = STRONG * STRONG;
+        self.score(a, b) > 1.0 && held_b < most * held_a && fit_b < most * fit_a
     }
 
     /// Where the leading trials move faster than coarse steps can follow: judges them again with

@@ -17,7 +17,8 @@ const LEADING: usize = 60;
 
 impl Search<'_, '_> {
     /// Expands other first causes too; all pairs with the first cause of the best one, best
-    /// first, if it beats one cause alone.
+    /// first, if it beats one cause alone. Where the residual does not visibly depend on the
+    /// inputs, it has to be as good as two strong causes.
     pub(super) fn pairs(
         &mut self,
         model: &Model,
@@ -25,8 +26,9 @@ impl Search<'_, '_> {
         previous: &[Trial],
         trials: &[Trial],
         candidates: &[Arc<Candidate>],
+        visible: bool,
     ) -> Option<Vec<Trial>> {
-        let first = model.added.get(self.known(model)).map(|a| a.cause.clone());
+        let first = model.added.get(model.known()).map(|a| a.cause.clone());
         let is_first = |cause: &Candidate| first.as_ref().is_some_and(|f| cause.same_cause(f));
         let base = self.problem.mean_square(before, Part::Choose);
         let sibling = |t: &Trial| {
@@ -61,8 +63,12 @@ impl Search<'_, '_> {
         }
         pool.sort_by(|a, b| a.held.total_cmp(&b.held));
         let best = pool.first()?;
-        let new_first = best.model.added.get(self.known(&best.model))?.cause.clone();
-        if !self.accepts(before, &best.y, best.weak) || is_first(&new_first) {
+        let new_first = best.model.added.get(best.model.known())?.cause.clone();
+        let worth = match visible {
+            true => self.accepts(before, &best.y, best.weak),
+            false => self.is_doubly_strong(before, &best.y),
+        };
+        if !worth || is_first(&new_first) {
             return None;
         }
         let before_last = best.model.added.len() - 1;

@@ -35,6 +35,12 @@ impl Model {
         model
     }
 
+    /// How many of its causes, the first ones, were known before any search: limits of the
+    /// instruments.
+    pub fn known(&self) -> usize {
+        self.added.iter().take_while(|added| added.cause.is_known_limit()).count()
+    }
+
     /// The same without one of its causes.
     pub fn without(&self, index: usize) -> Self {
         let mut model = self.clone();

@@ -60,8 +60,8 @@ impl Teller<'_, '_> {
         if chosen.found.full {
             remarks.push("The search stopped at the largest number of causes allowed.".into());
         }
-        let bound = |c: &Cause| c.effect == "coulomb_friction" || c.effect == "stribeck_friction";
-        for cause in causes.iter().filter(|c| bound(c)) {
+        let bound = |effect: &str| matches!(effect, "coulomb_friction" | "stribeck_friction");
+        for cause in causes.iter().filter(|c| bound(&c.effect)) {
             let width = cause.parameters.iter().find(|v| v.name == "width");
             if let Some(width) = width.filter(|w| w.std_error.is_none_or(|e| e > 0.5 * w.value)) {
                 remarks.push(format!(
@@ -71,6 +71,39 @@ impl Teller<'_, '_> {
                 ));
             }
         }
+        for added in &chosen.fitted.model.added {
+            let cause = &added.cause;
+            if let Wire::Stage(route) = &cause.wire
+                && bound(cause.effect)
+                && keeps_its_sign(self.nominal.series(route.source))
+            {
+                remarks.push(format!(
+                    "{} keeps its sign: while it moves, dry friction on {} looks like an offset; only rest, starts and stops tell them apart.",
+                    cause.of.as_deref().unwrap_or("The velocity"),
+                    cause.into
+                ));
+            }
+        }
         remarks
+    }
+}
+
+/// Whether a series goes to one side of 0 only, but for a fiftieth of its largest value.
+fn keeps_its_sign(series: &[f64]) -> bool {
+    let low = series.iter().copied().fold(0.0, f64::min);
+    let high = series.iter().copied().fold(0.0, f64::max);
+    f64::min(-low, high) < 0.02 * f64::max(-low, high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::keeps_its_sign;
+
+    #[test]
+    fn one_stroke_keeps_its_sign_and_there_and_back_does_not() {
+        assert!(keeps_its_sign(&[0.0, -0.001, 0.3, 0.6, 0.2, 0.0]));
+        assert!(keeps_its_sign(&[0.0, -0.3, 0.001]));
+        assert!(!keeps_its_sign(&[0.0, 0.3, -0.1]));
+        assert!(!keeps_its_sign(&[]));
     }
 }

@@ -12,7 +12,7 @@ use super::pairs::{shortlist, stayed};
 use super::problem::{Grain, Model, Part, Problem};
 use super::screen::Screen;
 use super::sets::headed_by;
-use super::stage::{REFITTED, Trial, stage};
+use super::stage::{REFITTED, SCAN_FAR, Trial, stage};
 use crate::statistics::strongest;
 use crate::watch::Watch;
 
@@ -46,8 +46,6 @@ pub(crate) struct Found {
     pub dependence: f64,
     /// Samples flagged as spikes, per output.
     pub spikes: Vec<Vec<usize>>,
-    /// How many of the causes, the first ones, were known before the search.
-    pub known: usize,
     /// Whether the most causes allowed were reached.
     pub full: bool,
 }
@@ -63,8 +61,6 @@ pub(crate) struct Search<'a, 'b> {
     /// Share of the whole work that this search is, from and to.
     pub share: (f64, f64),
     pub(super) accept: f64,
-    /// What the instruments cannot show, in every model from the start.
-    limits: Vec<Arc<Candidate>>,
 }
 
 impl<'a, 'b> Search<'a, 'b> {
@@ -76,8 +72,7 @@ impl<'a, 'b> Search<'a, 'b> {
         most: usize,
         watch: &'a dyn Watch,
     ) -> Self {
-        let (share, limits) = ((0.0, 1.0), vec![]);
-        Self { problem, nominal, nuisance, allowed, most, watch, share, accept: ACCEPT, limits }
+        Self { problem, nominal, nuisance, allowed, most, watch, share: (0.0, 1.0), accept: ACCEPT }
     }
 
     fn tell(&self, done: f64, doing: &str) {
@@ -123,7 +118,7 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Puts what the instruments cannot show into a model before anything is searched.
-    fn limited(&mut self, start: Model, slots: &mut Vec<Slot>) -> Model {
+    fn limited(&self, start: Model, slots: &mut Vec<Slot>) -> Model {
         let mut model = start;
         let outputs = self.problem.base.signals.outputs.clone();
         for (o, signal) in outputs.iter().enumerate().filter(|_| self.most > 0) {
@@ -134,18 +129,11 @@ impl<'a, 'b> Search<'a, 'b> {
             let candidates = library(self.problem, self.nominal, &model, vec![], self.allowed);
             if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
                 model = model.with(&cause, knobs);
-                self.limits.push(cause.clone());
                 let set = vec![(cause, 1.0)];
                 slots.push(Slot { set, others: vec![], score: ACCEPT_INDEPENDENT });
             }
         }
         model
-    }
-
-    /// How many of a model's causes, its first ones, were known before the search.
-    pub(super) fn known(&self, model: &Model) -> usize {
-        let is_known = |cause| self.limits.iter().any(|limit| Arc::ptr_eq(limit, cause));
-        model.added.iter().take_while(|added| is_known(&added.cause)).count()
     }
 
     /// Runs the search from a model to the end.
@@ -178,7 +166,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 break;
             }
             let mut before = self.present(&model)?;
-            let known = self.known(&model);
+            let known = model.known();
             if number > 0 && self.is_noise(&before) {
                 full = false;
                 break;
@@ -200,8 +188,11 @@ impl<'a, 'b> Search<'a, 'b> {
             } else {
                 last = Some(found.screen);
             }
+            // two causes may hide each other; what is left of a slow plant need not show either
+            let visible = dependence > DEPENDS;
+            let far = first.as_ref().is_some_and(|s| s.far > SCAN_FAR);
             let alone = number == 0
-                && dependence > DEPENDS
+                && (visible || far && !self.is_white(&before))
                 && trials.first().is_some_and(|t| !self.accepts_trial(&before, t));
             if alone {
                 previous = trials.clone();
@@ -216,7 +207,9 @@ impl<'a, 'b> Search<'a, 'b> {
             {
                 self.tell(at + 0.6 * step, "looking at pairs");
                 let leading = shortlist(&candidates, [&first, &last]);
-                if let Some(pool) = self.pairs(&model, &before, &previous, &trials, &leading) {
+                if let Some(pool) =
+                    self.pairs(&model, &before, &previous, &trials, &leading, visible || number > 0)
+                {
                     // what stands beside the last of each pair, a known limit too
                     let others = pool[0].model.added.iter().rev().skip(1).rev();
                     slots = others
@@ -268,7 +261,6 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         self.tell(1.0, "done");
         let spikes = self.problem.spikes();
-        let known = self.known(&model);
-        Some(Found { model, slots, first, last, dependence, spikes, known, full })
+        Some(Found { model, slots, first, last, dependence, spikes, full })
     }
 }

@@ -20,9 +20,11 @@ const SURE: f64 = 8.0;
 /// Below this share, or above this ratio of residual to output, the linear picture is not
 /// to be trusted and magnitudes are scanned.
 const SCAN_BELOW: f64 = 0.5;
-const SCAN_FAR: f64 = 0.2;
+pub(super) const SCAN_FAR: f64 = 0.2;
 /// Causes with one unknown that are refitted whatever stands before them.
 const PLAIN: usize = 4;
+/// Causes that pass from one store on to another and are refitted whatever stands before them.
+const BALANCED: usize = 2;
 /// Relative difference of two screens' figures below which they are those of twins.
 const TWIN: f64 = 1e-3;
 /// Twins that are refitted beside what was chosen, at most.
@@ -103,7 +105,10 @@ pub(crate) fn stage(
             break;
         }
         // several variants of one cause count once, unless there is room
-        let variant = chosen.iter().filter(|(c, _)| c.cause.same_cause(&scored.cause)).count();
+        let is_variant = |c: &Candidate| {
+            c.same_cause(&scored.cause) && c.also_into.len() == scored.cause.also_into.len()
+        };
+        let variant = chosen.iter().filter(|(c, _)| is_variant(&c.cause)).count();
         // and so does one shape in many places: a flexible one would crowd out the true one
         let same = chosen.iter().filter(|(c, _)| c.cause.effect == scored.cause.effect).count();
         if variant < 2
@@ -118,6 +123,22 @@ pub(crate) fn stage(
     let plain = screened.scored.iter().filter(|s| passes(s) && s.cause.unknowns() == 1);
     for scored in plain.take(PLAIN) {
         if !chosen.iter().any(|(c, _)| c.cause.same_cause(&scored.cause)) {
+            chosen.push((scored.clone(), None));
+        }
+    }
+    // what leaves one store and enters another keeps the balance, as few other laws do; on
+    // whichever side of its threshold
+    let same = |a: &Candidate, b: &Candidate| a.same_cause(b) && a.also_into == b.also_into;
+    let mut balanced: Vec<Arc<Candidate>> = vec![];
+    for s in screened.scored.iter().filter(|s| passes(s) && !s.cause.also_into.is_empty()) {
+        if balanced.len() < BALANCED && !balanced.iter().any(|b| same(b, &s.cause)) {
+            balanced.push(s.cause.clone());
+        }
+    }
+    for scored in &screened.scored {
+        if balanced.iter().any(|b| same(b, &scored.cause))
+            && !chosen.iter().any(|(c, _)| Arc::ptr_eq(&c.cause, &scored.cause))
+        {
             chosen.push((scored.clone(), None));
         }
     }

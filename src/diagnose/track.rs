@@ -71,7 +71,7 @@ fn moved_together(nuisance: &Nuisance, fitted: &Fitted, covariance: Option<&DMat
 impl Finished {
     /// Whether no cause was found but what was known before: limits of the instruments.
     fn found_nothing(&self) -> bool {
-        self.fitted.model.added.len() <= self.found.known
+        self.fitted.model.added.len() == self.fitted.model.known()
     }
 
     /// How much it takes: causes plus parameters moved.
@@ -181,7 +181,6 @@ impl Tracks<'_, '_> {
             last: None,
             dependence: trusted.found.dependence,
             spikes,
-            known: trusted.found.known,
             full: false,
         })
     }
