@@ -58,7 +58,8 @@ impl Teller<'_, '_> {
                 if !member.same_cause(cause) {
                     indistinguishable.push(alternative(member, gain.clamp(0.0, 1.0) * share));
                 }
-                for (into, of, _) in &member.twins {
+                // what holds of the headline's place holds of theirs, and need not be said again
+                for (into, of, _) in member.twins.iter().filter(|_| member.same_cause(cause)) {
                     indistinguishable.push(Alternative {
                         effect: member.effect.into(),
                         into: into.clone(),

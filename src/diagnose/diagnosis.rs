@@ -4,11 +4,12 @@ use std::time::Instant;
 
 use super::error::DiagnoseError;
 use super::faults::{Fault, flipped, retimed, strike};
-use super::finding::{Cause, Finding};
+use super::finding::{Cause, Finding, Track};
 use super::library::Allowed;
 use super::prepared::{Prepared, windows};
 use super::score::TestData;
 use super::teller::Teller;
+use super::track::CLEAN;
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run, Simulation};
 use crate::statistics::normal_tail;
@@ -171,16 +172,17 @@ impl<'a> Diagnosis<'a> {
     }
 
     /// A record whose clock seems to be wrong: if one cause in the machine explains as much, the
-    /// machine is to blame and the clock is another name of that.
+    /// machine is to blame and the clock is another name of that. Parameters that have to move
+    /// whatever the clock says are to blame as well.
     fn clocked(
         &self,
         mended: Mended,
         fault: &Fault,
         watch: &dyn Watch,
     ) -> Result<Finding, DiagnoseError> {
-        let one = self.search(&mended.records, mended.test.as_ref(), 1, watch)?;
+        let test = mended.test.as_ref();
+        let one = self.search(&mended.records, test, 1, watch)?;
         if one.causes.len() == 1 && one.gain.error_removed >= fault.removed - AS_MUCH {
-            let test = mended.test.as_ref();
             let mut finding = self.search(&mended.records, test, self.max_causes, watch)?;
             if let Some(first) = finding.causes.first_mut() {
                 first.indistinguishable.push(fault.alternative());
@@ -188,8 +190,15 @@ impl<'a> Diagnosis<'a> {
             return Ok(finding);
         }
         let records: Vec<Record> = mended.records.iter().map(|r| fault.mend(r)).collect();
-        let test = mended.test.map(|record| fault.mend(&record));
-        let mut finding = self.search(&records, test.as_ref(), self.max_causes, watch)?;
+        let mended_test = test.map(|record| fault.mend(record));
+        let mut finding = self.search(&records, mended_test.as_ref(), self.max_causes, watch)?;
+        if one.track == Track::ParametersFree && !finding.causes.is_empty() {
+            let machine = self.search(&mended.records, test, self.max_causes, watch)?;
+            let nothing_left = machine.left.dependence < CLEAN;
+            if nothing_left && machine.causes.len() <= finding.causes.len() + 1 {
+                return Ok(machine);
+            }
+        }
         finding.add(std::slice::from_ref(fault));
         Ok(finding)
     }

@@ -48,6 +48,8 @@ pub(crate) struct Found {
     pub spikes: Vec<Vec<usize>>,
     /// Whether the most causes allowed were reached.
     pub full: bool,
+    /// Whether it was given up, because its rival was better.
+    pub given_up: bool,
 }
 
 /// A search under way.
@@ -60,6 +62,9 @@ pub(crate) struct Search<'a, 'b> {
     pub watch: &'a dyn Watch,
     /// Share of the whole work that this search is, from and to.
     pub share: (f64, f64),
+    /// Outputs of a model, and the score by which it must not be better than the best single
+    /// cause: the search is given up otherwise.
+    pub rival: Option<(Arc<Vec<Vec<f64>>>, f64)>,
     pub(super) accept: f64,
 }
 
@@ -72,7 +77,14 @@ impl<'a, 'b> Search<'a, 'b> {
         most: usize,
         watch: &'a dyn Watch,
     ) -> Self {
-        Self { problem, nominal, nuisance, allowed, most, watch, share: (0.0, 1.0), accept: ACCEPT }
+        let (share, accept) = ((0.0, 1.0), ACCEPT);
+        Self { problem, nominal, nuisance, allowed, most, watch, share, rival: None, accept }
+    }
+
+    /// Whether the rival is clearly better than the best single cause.
+    fn is_behind(&self, best: Option<&Trial>) -> bool {
+        let (Some((rival, margin)), Some(best)) = (&self.rival, best) else { return false };
+        self.score(&best.y, rival) > *margin
     }
 
     fn tell(&self, done: f64, doing: &str) {
@@ -155,6 +167,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let mut previous: Vec<Trial> = vec![];
         let mut only = None;
         let mut full = true;
+        let mut given_up = false;
         for number in 0..self.most.max(1) {
             let (at, step) = (number as f64 / (self.most + 1) as f64, 1.0 / (self.most + 1) as f64);
             self.tell(
@@ -188,10 +201,14 @@ impl<'a, 'b> Search<'a, 'b> {
             } else {
                 last = Some(found.screen);
             }
+            if number == 0 && self.is_behind(trials.first()) {
+                given_up = true;
+            }
             // two causes may hide each other; what is left of a slow plant need not show either
             let visible = dependence > DEPENDS;
             let far = first.as_ref().is_some_and(|s| s.far > SCAN_FAR);
             let alone = number == 0
+                && !given_up
                 && (visible || far && !self.is_white(&before))
                 && trials.first().is_some_and(|t| !self.accepts_trial(&before, t));
             if alone {
@@ -240,9 +257,13 @@ impl<'a, 'b> Search<'a, 'b> {
             slots.push(Slot { score, ..headed_by(slot, &trials[0].cause) });
             model = trials[0].model.clone();
             only = (number == 0).then_some((trials, held));
+            if given_up {
+                full = false;
+                break;
+            }
             self.tell(at + 0.8 * step, "checking what was named");
             self.prune(&mut model, &mut slots, 1);
-            self.swap(&mut model, &mut slots);
+            self.swap(&mut model, &mut slots, [&first, &last]);
             self.prune(&mut model, &mut slots, 0);
             self.flag(&model);
             self.problem.recorrect(&model);
@@ -261,6 +282,6 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         self.tell(1.0, "done");
         let spikes = self.problem.spikes();
-        Some(Found { model, slots, first, last, dependence, spikes, full })
+        Some(Found { model, slots, first, last, dependence, spikes, full, given_up })
     }
 }

@@ -20,8 +20,12 @@ use crate::watch::Watch;
 const MOVED: f64 = 3.0;
 /// Score at which one track wins whatever it needs.
 const WINS: f64 = 4.0;
+/// Score at which moved parameters that leave nothing beat a single cause.
+const ENOUGH: f64 = 1.0;
 /// Causes from which on the free track is searched from its own beginning.
 const MANY: usize = 3;
+/// Dependence on the inputs below which nothing is left to find.
+pub(super) const CLEAN: f64 = 3.0;
 /// Share of the mean square left at which wrong parameters are no suspects any more.
 const SOLVED: f64 = 0.01;
 /// Share of the distance from white that is left where free parameters made way for a cause.
@@ -95,16 +99,34 @@ impl Tracks<'_, '_> {
     /// Searches both tracks; the chosen one comes first.
     pub fn run(mut self) -> Option<(Finished, Option<Finished>)> {
         let start = self.start;
-        let trusted = Nuisance::new(self.problem, self.nominal);
-        let found = self.search(trusted.clone(), start, (0.0, 0.6))?;
-        let settled = found.slots.len() < MANY && !found.full;
-        let trusted = self.finish(Track::ParametersTrusted, found, trusted)?;
-        if self.watch.stopped() {
-            return Some((trusted, None));
+        let held = Nuisance::new(self.problem, self.nominal);
+        let free = held.clone().with_parameters(self.problem, &self.allowed.fixed);
+        let moved = (!free.free.is_empty()).then(|| self.moved_alone(&free)).flatten();
+        let rival = moved.as_ref().map(|(_, y)| {
+            // where nothing is left that depends on the inputs, moved parameters are enough
+            let enough = dependence(self.problem, self.nominal, y) < CLEAN;
+            (y.clone(), if enough { ENOUGH } else { WINS })
+        });
+        let mut found = self.search(held.clone(), start, (0.0, 0.6), rival)?;
+        if let (true, Some((moved, _))) = (found.given_up, moved) {
+            // many parameters are wrong: a list of causes is no way to say so
+            let on_free = self.search(free.clone(), &moved, (0.2, 0.95), None);
+            let on_free = on_free.and_then(|f| self.finish(Track::ParametersFree, f, free));
+            let is_enough = |of: &Finished| of.dependence < CLEAN && !of.found.full;
+            let enough = self.watch.stopped() || on_free.as_ref().is_some_and(is_enough);
+            if !enough || on_free.is_none() {
+                found = self.search(held.clone(), start, (0.6, 0.95), None)?;
+            }
+            let trusted = self.finish(Track::ParametersTrusted, found, held)?;
+            return Some(match on_free {
+                Some(free) if enough => (free, Some(trusted)),
+                Some(free) => self.chosen(trusted, free),
+                None => (trusted, None),
+            });
         }
-        let free = Nuisance::new(self.problem, self.nominal)
-            .with_parameters(self.problem, &self.allowed.fixed);
-        if free.free.is_empty() {
+        let settled = found.slots.len() < MANY && !found.full;
+        let trusted = self.finish(Track::ParametersTrusted, found, held)?;
+        if self.watch.stopped() || free.free.is_empty() {
             return Some((trusted, None));
         }
         let baseline = self.problem.simulate(start, Grain::Fine);
@@ -115,16 +137,29 @@ impl Tracks<'_, '_> {
         // nothing named, and yet what is left is not white: parameters that were fitted to
         // make up for a cause may hide it while they are held
         let hidden = trusted.found_nothing() && self.colour(&trusted.y) > COLOURED;
-        let clean = settled && trusted.dependence < 3.0 && !hidden || left < SOLVED;
+        let clean = settled && trusted.dependence < CLEAN && !hidden || left < SOLVED;
         let found = if clean {
             self.carried_over(&free, start, &trusted)
         } else {
-            self.search(free.clone(), start, (0.6, 0.95))
+            self.search(free.clone(), start, (0.6, 0.95), None)
         };
-        let Some(free) = found.and_then(|found| self.finish(Track::ParametersFree, found, free))
-        else {
-            return Some((trusted, None));
-        };
+        let free = found.and_then(|found| self.finish(Track::ParametersFree, found, free));
+        match free {
+            Some(free) => Some(self.chosen(trusted, free)),
+            None => Some((trusted, None)),
+        }
+    }
+
+    /// The baseline with its parameters moved and no cause, and its outputs.
+    fn moved_alone(&self, free: &Nuisance) -> Option<(Model, Arc<Vec<Vec<f64>>>)> {
+        let model = std::slice::from_ref(self.start);
+        let model = refit(self.problem, free, model, Refit::search()).swap_remove(0)?.model;
+        let y = self.problem.simulate(&model, Grain::Coarse)?;
+        Some((model, y))
+    }
+
+    /// The track to believe, and the other one.
+    fn chosen(&self, trusted: Finished, free: Finished) -> (Finished, Option<Finished>) {
         let better = self.problem.better(&trusted.y, &free.y, Part::Choose);
         let whiter = trusted.found_nothing()
             && !free.found_nothing()
@@ -134,7 +169,7 @@ impl Tracks<'_, '_> {
             b if b < -WINS => false,
             _ => free.price() < trusted.price(),
         };
-        Some(if take_free { (free, Some(trusted)) } else { (trusted, Some(free)) })
+        if take_free { (free, Some(trusted)) } else { (trusted, Some(free)) }
     }
 
     /// How far the residual is from white, as a normal score.
@@ -143,10 +178,16 @@ impl Tracks<'_, '_> {
         r.chunks(r.len() / self.problem.y.len()).map(whiteness).fold(0.0, f64::max)
     }
 
-    fn search(&mut self, nuisance: Nuisance, start: &Model, share: (f64, f64)) -> Option<Found> {
+    fn search(
+        &mut self,
+        nuisance: Nuisance,
+        start: &Model,
+        share: (f64, f64),
+        rival: Option<(Arc<Vec<Vec<f64>>>, f64)>,
+    ) -> Option<Found> {
         let (allowed, most, watch) = (self.allowed, self.most, self.watch);
         let mut search = Search::new(self.problem, self.nominal, nuisance, allowed, most, watch);
-        search.share = share;
+        (search.share, search.rival) = (share, rival);
         search.run(start.clone())
     }
 
@@ -182,6 +223,7 @@ impl Tracks<'_, '_> {
             dependence: trusted.found.dependence,
             spikes,
             full: false,
+            given_up: false,
         })
     }
 
