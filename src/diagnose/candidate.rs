@@ -96,6 +96,16 @@ impl Candidate {
         self.linear.len() + self.refine.len()
     }
 
+    /// How many plain causes it counts for: a curve of unknown shape can be nearly anything.
+    pub fn price(&self) -> usize {
+        if self.is_drawn() { 3 } else { 1 }
+    }
+
+    /// Whether it is a curve of unknown shape.
+    pub fn is_drawn(&self) -> bool {
+        self.effect == super::sketch::NAME
+    }
+
     /// How equal explanations are ordered: the least comes first.
     pub fn order(&self) -> (Preference, usize, u8, Preference) {
         (self.preference, self.unknowns(), self.card.rank, self.place)

@@ -86,7 +86,10 @@ impl Teller<'_, '_> {
                 of: cause.of.clone(),
                 also_into: cause.also_into.iter().map(|a| a.channel().to_string()).collect(),
                 also_of: vec![],
-                sentence: sentence(cause, &values, share, nominal),
+                sentence: match cause.is_drawn() {
+                    true => self.curve_in_words(cause, &added.knobs, share),
+                    false => sentence(cause, &values, share, nominal),
+                },
                 parameters: values,
                 p_value: normal_tail(score).max(1e-300),
                 error_removed: share,
@@ -150,9 +153,15 @@ impl Teller<'_, '_> {
             }];
         }
         let knobs = cause.card.knobs.iter().zip(knobs).enumerate();
-        knobs
-            .filter(|(_, (_, value))| value.is_finite())
-            .map(|(i, (knob, value))| Value {
+        // where the values of a free curve stand is part of what was found
+        let at = super::sketch::knots_of(cause).into_iter().enumerate().map(|(i, knot)| Value {
+            name: format!("knots.{i}"),
+            value: knot,
+            std_error: None,
+            unit: cause.units.1.clone(),
+        });
+        let values =
+            knobs.filter(|(_, (_, value))| value.is_finite()).map(|(i, (knob, value))| Value {
                 name: knob.name.to_string(),
                 value,
                 std_error: error(i),
@@ -161,8 +170,8 @@ impl Teller<'_, '_> {
                     Wire::Drift(_) => format!("{}/s", cause.units.0),
                     _ => knob.unit.text(&cause.units.0, &cause.units.1),
                 },
-            })
-            .collect()
+            });
+        values.chain(at).collect()
     }
 
     /// Parameters that the chosen track moved, as causes.

@@ -263,7 +263,7 @@ pub struct Series {
 /// The missing quantity against the coordinate that it depends on.
 #[derive(Debug, Clone, Default)]
 pub struct Curve {
-    /// Cause it belongs to.
+    /// Cause it belongs to; where there is none, the curve that comes nearest to what is left.
     pub cause: usize,
     /// Coordinate and unit.
     pub coordinate: (String, String),
@@ -283,10 +283,13 @@ impl std::fmt::Display for Finding {
             Verdict::NothingFound => {
                 write!(f, "Nothing found: what the model leaves does not depend on the inputs.")
             }
-            Verdict::Unexplained => write!(
-                f,
-                "Unexplained: what is left depends on the inputs, and nothing in the library accounts for it."
-            ),
+            Verdict::Unexplained => {
+                write!(
+                    f,
+                    "Unexplained: what is left depends on the inputs, and nothing in the library accounts for it."
+                )?;
+                self.causes.iter().try_for_each(|cause| write!(f, "\n{}", cause.sentence))
+            }
             _ => {
                 for (i, cause) in self.causes.iter().enumerate() {
                     if i > 0 {

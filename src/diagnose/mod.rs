@@ -26,16 +26,18 @@ mod problem;
 mod prune;
 mod records;
 mod remarks;
+mod resembles;
 mod scan;
 mod score;
 mod screen;
 mod search;
-
 mod sets;
+mod shapeless;
+mod sketch;
+mod smooth;
 mod spikes;
 mod stage;
 mod teller;
-
 mod track;
 mod words;
 

@@ -109,7 +109,12 @@ impl Nuisance {
                     let range = if (max - min).is_finite() { 0.02 * (max - min) } else { 0.0 };
                     value.abs().max(range)
                 };
-                Unknown::new(value, scale.max(1e-12)).within(min, max)
+                let unknown = Unknown::new(value, scale.max(1e-12)).within(min, max);
+                // knots that no data reach stay where they are
+                match cause.is_drawn() {
+                    true => unknown.expected(value, scale.max(1e-12)),
+                    false => unknown,
+                }
             }
         }
     }

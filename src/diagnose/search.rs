@@ -87,7 +87,7 @@ impl<'a, 'b> Search<'a, 'b> {
         self.score(&best.y, rival) > *margin
     }
 
-    fn tell(&self, done: f64, doing: &str) {
+    pub(super) fn tell(&self, done: f64, doing: &str) {
         let (from, to) = self.share;
         self.watch.tell(from + (to - from) * done, doing);
     }
@@ -278,7 +278,12 @@ impl<'a, 'b> Search<'a, 'b> {
                 model = trials[headline].model.clone();
                 slots = vec![Slot { score: slots[0].score, ..slot }];
             }
+            // every set is asked for once more, unless somebody waits for the end
+            _ if self.watch.stopped() => {}
             _ => self.settle(&mut model, &mut slots),
+        }
+        if !given_up {
+            self.shapeless(&mut model, &mut slots);
         }
         self.tell(1.0, "done");
         let spikes = self.problem.spikes();

@@ -15,6 +15,7 @@ use super::nuisance::{Refit, refit};
 use super::problem::{Grain, Model, Part, Problem};
 use super::records::Joined;
 use super::score::{TestData, gain};
+use super::sketch;
 use super::track::Finished;
 use crate::data::Record;
 use crate::evaluate::Metrics;
@@ -24,6 +25,8 @@ use crate::system::System;
 
 /// Dependence on the inputs above which what is left is not noise.
 pub(super) const DEPENDS: f64 = 3.0;
+/// Share of the removable error that a curve of unknown shape must remove to explain it.
+const EXPLAINED: f64 = 0.8;
 
 /// What is told from.
 pub(crate) struct Teller<'a, 'b> {
@@ -54,12 +57,22 @@ impl Teller<'_, '_> {
         causes.extend(self.moved(chosen, test, &before, &after, &floors)?);
         let structural = causes.iter().filter(|cause| cause.rows.is_none()).count();
         causes.extend(self.outliers(chosen));
+        let gain = gain(&before, &after, &floors);
+        let curves_only = causes.iter().all(|c| c.rows.is_some() || c.effect == sketch::NAME);
         let verdict = match (structural, causes.len()) {
+            (1.., _) if curves_only && gain.error_removed < EXPLAINED => Verdict::Unexplained,
             (0, 0) if chosen.dependence > DEPENDS => Verdict::Unexplained,
             (0, 0) => Verdict::NothingFound,
             (0, _) => Verdict::DataFault,
             _ => Verdict::CausesFound,
         };
+        let mut remarks = self.remarks(chosen, &causes);
+        let mut series = self.series(chosen, &y_before);
+        let unknown = verdict == Verdict::Unexplained && causes.is_empty();
+        if let Some((curve, said)) = unknown.then(|| self.suspicion(chosen)).flatten() {
+            series.curves.push(curve);
+            remarks.push(said);
+        }
         let data_metrics = |y: &[Vec<f64>]| {
             let names = self.problem.base.signals.outputs.iter();
             names
@@ -80,7 +93,6 @@ impl Teller<'_, '_> {
             }),
             dependence: chosen.dependence,
         };
-        let gain = gain(&before, &after, &floors);
         Ok(Finding {
             schema: 1,
             verdict,
@@ -95,11 +107,11 @@ impl Teller<'_, '_> {
             left,
             ranking: self.ranking(chosen),
             not_found: self.not_found(chosen),
-            remarks: self.remarks(chosen, &causes),
+            remarks,
             causes,
             interrupted: false,
             seconds: 0.0,
-            series: self.series(chosen, &y_before),
+            series,
             extended,
         })
     }

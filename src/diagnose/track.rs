@@ -80,7 +80,9 @@ impl Finished {
 
     /// How much it takes: causes plus parameters moved.
     fn price(&self) -> usize {
-        self.fitted.model.added.len() + self.moved.len().max(usize::from(self.moved_together))
+        let causes = self.fitted.model.added.iter();
+        let causes: usize = causes.map(|added| added.cause.price()).sum();
+        causes + self.moved.len().max(usize::from(self.moved_together))
     }
 }
 
@@ -137,7 +139,10 @@ impl Tracks<'_, '_> {
         // nothing named, and yet what is left is not white: parameters that were fitted to
         // make up for a cause may hide it while they are held
         let hidden = trusted.found_nothing() && self.colour(&trusted.y) > COLOURED;
-        let clean = settled && trusted.dependence < CLEAN && !hidden || left < SOLVED;
+        // a curve is the last resort: whether moved parameters make it superfluous is asked first
+        let drawn = trusted.fitted.model.added.iter().any(|added| added.cause.is_drawn());
+        let explained = settled && trusted.dependence < CLEAN && !hidden || left < SOLVED;
+        let clean = explained && !drawn;
         let found = if clean {
             self.carried_over(&free, start, &trusted)
         } else {

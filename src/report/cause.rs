@@ -4,6 +4,21 @@ use super::page::{Page, share};
 use super::svg::Figure;
 use crate::diagnose::{Alternative, Cause, Curve, Finding, number};
 
+/// The section of what no cause was found for: the curve that comes nearest to it.
+pub fn unexplained(page: &mut Page, finding: &Finding) {
+    let Some(curve) = finding.series.curves.first().filter(|_| finding.causes.is_empty()) else {
+        return;
+    };
+    page.heading("What comes nearest");
+    page.raw(&figure(curve).svg());
+    page.element(
+        "p",
+        "note",
+        "What the model may lack against the coordinate, to first order and without assuming a \
+         shape (bars: two standard errors). It predicts too little of what is left to be named.",
+    );
+}
+
 /// The section of a cause.
 pub fn section(page: &mut Page, finding: &Finding, index: usize) {
     let cause = &finding.causes[index];
@@ -81,5 +96,8 @@ pub fn figure(curve: &Curve) -> Figure {
         .height(320.0);
     let figure =
         if curve.knots.is_empty() { figure } else { figure.dots("free", "without a shape", dots) };
+    if curve.law.is_empty() {
+        return figure;
+    }
     figure.line("law", "the law named", curve.law.clone())
 }

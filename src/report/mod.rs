@@ -70,6 +70,7 @@ impl<'a> Report<'a> {
         for index in 0..finding.causes.len() {
             cause::section(&mut page, finding, index);
         }
+        cause::unexplained(&mut page, finding);
         signals::sections(&mut page, &finding.series, finding);
         tables::sections(&mut page, finding);
         page.raw(FOOTER);

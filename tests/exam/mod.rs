@@ -1,5 +1,5 @@
 //! Hides an effect in a machine, makes its records, and reads what a diagnosis says.
-#![allow(dead_code)]
+#![allow(dead_code, unused_macros)]
 
 pub mod plants;
 
