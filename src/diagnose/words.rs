@@ -33,10 +33,10 @@ pub(crate) fn magnitude(value: &Value, signed: bool) -> String {
 /// A share in per cent.
 pub(crate) fn percent(share: f64) -> String {
     let percent = 100.0 * share;
-    if (99.0..100.0).contains(&percent) {
-        format!("{percent:.1} %")
-    } else {
-        format!("{percent:.0} %")
+    match percent {
+        0.0..0.05 => "less than 0.1 %".into(),
+        0.05..0.95 | 99.0..100.0 => format!("{percent:.1} %"),
+        _ => format!("{percent:.0} %"),
     }
 }
 
@@ -105,5 +105,7 @@ mod tests {
         assert_eq!(number(0.1, None), "0.1000");
         assert_eq!(percent(0.984), "98 %");
         assert_eq!(percent(0.9984), "99.8 %");
+        assert_eq!(percent(0.0031), "0.3 %");
+        assert_eq!(percent(0.0), "less than 0.1 %");
     }
 }
