@@ -1,9 +1,7 @@
 //! What a later cause makes of earlier ones: some are no longer needed, some have a better one
 //! in their place.
 
-use super::pairs::shortlist;
 use super::problem::{Model, Part};
-use super::screen::Screen;
 use super::search::{Search, Slot};
 use super::sets::{AS_GOOD, headed_by};
 use super::stage::{stage, trial};
@@ -50,14 +48,8 @@ impl Search<'_, '_> {
     }
 
     /// Takes each cause out in turn and looks for a better one in its place, until nothing
-    /// changes; refreshes every set given the other causes. Only what leads one of the screens
-    /// is asked for.
-    pub(super) fn swap(
-        &mut self,
-        model: &mut Model,
-        slots: &mut Vec<Slot>,
-        screens: [&Option<Screen>; 2],
-    ) {
+    /// changes; refreshes every set given the other causes.
+    pub(super) fn swap(&mut self, model: &mut Model, slots: &mut Vec<Slot>) {
         if model.added.len() < 2 {
             return;
         }
@@ -70,7 +62,7 @@ impl Search<'_, '_> {
                 }
                 let cause = model.added[i].cause.clone();
                 let without = self.fitted(model.without(i));
-                let candidates = shortlist(&self.candidates(&without), screens);
+                let candidates = self.candidates(&without);
                 let Some(found) =
                     stage(self.problem, &self.nuisance, &without, &candidates, false, 6)
                 else {

@@ -263,7 +263,7 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             self.tell(at + 0.8 * step, "checking what was named");
             self.prune(&mut model, &mut slots, 1);
-            self.swap(&mut model, &mut slots, [&first, &last]);
+            self.swap(&mut model, &mut slots);
             self.prune(&mut model, &mut slots, 0);
             self.flag(&model);
             self.problem.recorrect(&model);

@@ -30,6 +30,8 @@ pub(super) const CLEAN: f64 = 3.0;
 const SOLVED: f64 = 0.01;
 /// Share of the distance from white that is left where free parameters made way for a cause.
 const WHITER: f64 = 0.5;
+/// Share of the mean square left where moved parameters with causes beat none.
+const STRONGER: f64 = 0.36;
 /// Score from which on a residual is not white.
 const COLOURED: f64 = 10.0;
 
@@ -169,8 +171,13 @@ impl Tracks<'_, '_> {
         let whiter = trusted.found_nothing()
             && !free.found_nothing()
             && self.colour(&free.y) < WHITER * self.colour(&trusted.y);
+        // causes that are only seen where parameters move, and that leave little
+        let left = |of: &Finished| self.problem.mean_square(&of.y, Part::All);
+        let strong = trusted.found_nothing()
+            && !free.found_nothing()
+            && left(&free) < STRONGER * left(&trusted);
         let take_free = match better {
-            b if b > WINS || whiter => true,
+            b if b > WINS || whiter || strong => true,
             b if b < -WINS => false,
             _ => free.price() < trusted.price(),
         };

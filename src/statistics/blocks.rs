@@ -8,6 +8,8 @@ use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 /// Blocks at most and at least.
 const MOST: usize = 40;
 const LEAST: usize = 8;
+/// Degrees of freedom below which a score is not worth its name.
+const LEAST_FREEDOM: f64 = 0.2;
 /// Scores beyond this are reported as this.
 const HIGHEST: f64 = 37.0;
 
@@ -108,12 +110,11 @@ pub(crate) fn spread(sums: &[f64]) -> f64 {
 }
 
 /// A Student t with `freedom` degrees of freedom as the normal score of the same tail.
-pub(crate) fn normal_score(t: f64, freedom: usize) -> f64 {
+fn normal_score(t: f64, freedom: f64) -> f64 {
     if !t.is_finite() {
         return if t.is_nan() { 0.0 } else { HIGHEST.copysign(t) };
     }
-    let (Ok(student), Ok(normal)) =
-        (StudentsT::new(0.0, 1.0, freedom.max(1) as f64), Normal::new(0.0, 1.0))
+    let (Ok(student), Ok(normal)) = (StudentsT::new(0.0, 1.0, freedom), Normal::new(0.0, 1.0))
     else {
         return 0.0;
     };
@@ -149,7 +150,9 @@ pub(crate) fn mixture(ff: &[f64], fr: &[f64]) -> f64 {
     weight_score(ff, fr, 0.5)
 }
 
-/// (g - reference) over its block-robust standard error, as a normal score.
+/// (g - reference) over its block-robust standard error, as a normal score. Where f lives in a
+/// few blocks only, these few are all that the error is known from: one block that the weight
+/// was fitted to says nothing about it.
 fn weight_score(ff: &[f64], fr: &[f64], reference: f64) -> f64 {
     let total: f64 = ff.iter().sum();
     if !(total > 0.0) {
@@ -159,8 +162,17 @@ fn weight_score(ff: &[f64], fr: &[f64], reference: f64) -> f64 {
     let left: Vec<f64> = ff.iter().zip(fr).map(|(ff, fr)| fr - weight * ff).collect();
     let count = blocks(&left);
     let sums = block_sums(&left, count);
-    let error = (sums.len() as f64).sqrt() * spread(&sums) + 1e-12 * total;
-    normal_score((weight - reference) * total / error, sums.len().saturating_sub(1))
+    let in_blocks = block_sums(ff, count);
+    let squares: f64 = in_blocks.iter().map(|f| f * f).sum();
+    // number of equal blocks that would be as unequal
+    let telling = in_blocks.iter().sum::<f64>().powi(2) / squares;
+    let freedom = telling - 1.0;
+    if !(freedom > LEAST_FREEDOM) {
+        return 0.0;
+    }
+    let lost = (telling / freedom).sqrt();
+    let error = (sums.len() as f64).sqrt() * spread(&sums) * lost + 1e-12 * total;
+    normal_score((weight - reference) * total / error, freedom)
 }
 
 /// Ljung-Box statistic on 20 lags as a normal score: how far from white.
@@ -179,6 +191,19 @@ pub(crate) fn whiteness(x: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_happens_in_one_block_proves_nothing() {
+        let r = noise(4000, 5);
+        let step = |from: usize, to: usize| -> (Vec<f64>, Vec<f64>) {
+            let f = |k: usize| if (from..to).contains(&k) { 0.3 } else { 0.0 };
+            (0..4000).map(|k| (f(k) * f(k), f(k) * (r[k] + f(k)))).unzip()
+        };
+        let (ff, fr) = step(10, 40);
+        assert_eq!(wald(&ff, &fr), 0.0);
+        let (ff, fr) = step(10, 3000);
+        assert!(wald(&ff, &fr) > 8.0, "{}", wald(&ff, &fr));
+    }
 
     /// A small deterministic noise source for the tests.
     fn noise(n: usize, mut seed: u64) -> Vec<f64> {
@@ -199,8 +224,8 @@ mod tests {
     #[test]
     fn score_of_a_student_t() {
         // two-sided 5 % of t(10) is 2.228, of the normal 1.960
-        assert!((normal_score(2.228_139, 10) - 1.959_964).abs() < 1e-4);
-        assert_eq!(normal_score(f64::INFINITY, 10), 37.0);
+        assert!((normal_score(2.228_139, 10.0) - 1.959_964).abs() < 1e-4);
+        assert_eq!(normal_score(f64::INFINITY, 10.0), 37.0);
     }
 
     #[test]
