@@ -8,8 +8,8 @@ use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 /// Blocks at most and at least.
 const MOST: usize = 40;
 const LEAST: usize = 8;
-/// Degrees of freedom below which a score is not worth its name.
-const LEAST_FREEDOM: f64 = 0.2;
+/// Share of the largest block's that a block must hold to say something about the error.
+const TELLING: f64 = 0.01;
 /// Scores beyond this are reported as this.
 const HIGHEST: f64 = 37.0;
 
@@ -163,15 +163,16 @@ fn weight_score(ff: &[f64], fr: &[f64], reference: f64) -> f64 {
     let count = blocks(&left);
     let sums = block_sums(&left, count);
     let in_blocks = block_sums(ff, count);
-    let squares: f64 = in_blocks.iter().map(|f| f * f).sum();
-    // number of equal blocks that would be as unequal
-    let telling = in_blocks.iter().sum::<f64>().powi(2) / squares;
-    let freedom = telling - 1.0;
-    if !(freedom > LEAST_FREEDOM) {
+    let largest = in_blocks.iter().copied().fold(0.0, f64::max);
+    let telling = in_blocks.iter().filter(|&&f| f > TELLING * largest).count();
+    if telling < 2 {
         return 0.0;
     }
-    let lost = (telling / freedom).sqrt();
+    // the blocks without f have nothing left by construction
+    let freed = |n: usize| n as f64 / (n as f64 - 1.0);
+    let lost = (freed(telling) / freed(sums.len())).sqrt();
     let error = (sums.len() as f64).sqrt() * spread(&sums) * lost + 1e-12 * total;
+    let freedom = telling as f64 - 1.0;
     normal_score((weight - reference) * total / error, freedom)
 }
 
