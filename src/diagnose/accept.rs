@@ -10,6 +10,8 @@ use crate::statistics::whiteness;
 
 /// A mean square cut to less than this counts as a strong improvement.
 const STRONG: f64 = 0.6;
+/// What two strong improvements leave of a mean square.
+pub(super) const DOUBLY_STRONG: f64 = STRONG * STRONG;
 /// Score on the part that chooses that confirms what the fitted part leaves no doubt of.
 const CONFIRMED: f64 = 2.5;
 /// Score of whiteness below which a residual has no memory that could pass for a cause.
@@ -62,8 +64,7 @@ impl Search<'_, '_> {
     /// is asked of a pair whose causes hide each other, and of which nothing else can be seen.
     pub(super) fn is_doubly_strong(&self, a: &[Vec<f64>], b: &[Vec<f64>]) -> bool {
         let ((fit_a, held_a), (fit_b, held_b)) = (self.mean_squares(a), self.mean_squares(b));
-        let most = STRONG * STRONG;
-        self.score(a, b) > 1.0 && held_b < most * held_a && fit_b < most * fit_a
+        self.score(a, b) > 1.0 && held_b < DOUBLY_STRONG * held_a && fit_b < DOUBLY_STRONG * fit_a
     }
 
     /// Where the leading trials move faster than coarse steps can follow: judges them again with

@@ -6,6 +6,8 @@ use super::nominal::Nominal;
 use super::problem::Problem;
 use crate::statistics::{deviation, mean, mixture};
 
+/// Score above which what is left is not noise.
+pub(super) const DEPENDS: f64 = 3.0;
 /// Samples that a dependence may reach back.
 const REACH: usize = 300;
 /// Lags tried, fewer in short records.

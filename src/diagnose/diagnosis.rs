@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::dependence::DEPENDS;
 use super::error::DiagnoseError;
 use super::faults::{Fault, flipped, retimed, strike};
 use super::finding::{Cause, Finding, Track};
@@ -9,7 +10,6 @@ use super::library::Allowed;
 use super::prepared::{Prepared, windows};
 use super::score::TestData;
 use super::teller::Teller;
-use super::track::CLEAN;
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run, Simulation};
 use crate::statistics::normal_tail;
@@ -194,7 +194,7 @@ impl<'a> Diagnosis<'a> {
         let mut finding = self.search(&records, mended_test.as_ref(), self.max_causes, watch)?;
         if one.track == Track::ParametersFree && !finding.causes.is_empty() {
             let machine = self.search(&mended.records, test, self.max_causes, watch)?;
-            let nothing_left = machine.left.dependence < CLEAN;
+            let nothing_left = machine.left.dependence < DEPENDS;
             if nothing_left && machine.causes.len() <= finding.causes.len() + 1 {
                 return Ok(machine);
             }

@@ -1,9 +1,10 @@
 //! What was looked for and not found, and what else is worth knowing.
 
 use super::candidate::{Candidate, Wire};
+use super::dependence::DEPENDS;
 use super::finding::{Cause, NotFound};
 use super::problem::Part;
-use super::teller::{DEPENDS, Teller};
+use super::teller::Teller;
 use super::track::Finished;
 use crate::statistics::rms;
 

@@ -57,16 +57,16 @@ pub(super) fn smoothed(
         return None;
     }
     let bends = bends(knots);
-    let solve = |normal: &DMatrix<f64>, right: &DVector<f64>, weight: f64| {
+    let factor = |normal: &DMatrix<f64>, weight: f64| {
         // a whisper of damping: a level that an offset can imitate has no answer of its own
         let damped = normal + &bends * (weight * scale) + DMatrix::identity(n, n) * (1e-6 * scale);
-        damped.cholesky().map(|factor| factor.solve(right))
+        damped.cholesky()
     };
     let mut best: Option<(f64, f64)> = None;
     for weight in SMOOTH {
         let mut wrong = 0.0;
         for (own, own_right, squares) in &folds {
-            let v = solve(&(&normal - own), &(&right - own_right), weight)?;
+            let v = factor(&(&normal - own), weight)?.solve(&(&right - own_right));
             wrong += squares - 2.0 * v.dot(own_right) + v.dot(&(own * &v));
         }
         let share = 1.0 - wrong / total;
@@ -75,8 +75,7 @@ pub(super) fn smoothed(
         }
     }
     let (share, weight) = best?;
-    let damped = &normal + &bends * (weight * scale) + DMatrix::identity(n, n) * (1e-6 * scale);
-    let inverse = damped.cholesky()?.inverse();
+    let inverse = factor(&normal, weight)?.inverse();
     let values = &inverse * right;
     let variance = (1.0 - share).clamp(0.0, 1.0) * total / rows as f64;
     let errors = inverse.diagonal().map(|v| (variance * v).sqrt());

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use super::candidate::Wire;
 use super::causes::alternative;
 use super::curves::curves;
+use super::dependence::DEPENDS;
 use super::error::DiagnoseError;
 use super::finding::{
     Finding, Left, NoiseFloor, OtherTrack, Ranked, Scores, Series, Track, Verdict,
@@ -23,8 +24,6 @@ use crate::model::with_parameters;
 use crate::statistics::whiteness;
 use crate::system::System;
 
-/// Dependence on the inputs above which what is left is not noise.
-pub(super) const DEPENDS: f64 = 3.0;
 /// Share of the removable error that a curve of unknown shape must remove to explain it.
 const EXPLAINED: f64 = 0.8;
 

@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::accept::DOUBLY_STRONG;
 use super::candidate::Wire;
-use super::dependence::dependence;
+use super::dependence::{DEPENDS, dependence};
 use super::finding::{Moved, Track};
 use super::library::Allowed;
 use super::nominal::Nominal;
@@ -24,14 +25,10 @@ const WINS: f64 = 4.0;
 const ENOUGH: f64 = 1.0;
 /// Causes from which on the free track is searched from its own beginning.
 const MANY: usize = 3;
-/// Dependence on the inputs below which nothing is left to find.
-pub(super) const CLEAN: f64 = 3.0;
 /// Share of the mean square left at which wrong parameters are no suspects any more.
 const SOLVED: f64 = 0.01;
 /// Share of the distance from white that is left where free parameters made way for a cause.
 const WHITER: f64 = 0.5;
-/// Share of the mean square left where moved parameters with causes beat none.
-const STRONGER: f64 = 0.36;
 /// Score from which on a residual is not white.
 const COLOURED: f64 = 10.0;
 
@@ -108,7 +105,7 @@ impl Tracks<'_, '_> {
         let moved = (!free.free.is_empty()).then(|| self.moved_alone(&free)).flatten();
         let rival = moved.as_ref().map(|(_, y)| {
             // where nothing is left that depends on the inputs, moved parameters are enough
-            let enough = dependence(self.problem, self.nominal, y) < CLEAN;
+            let enough = dependence(self.problem, self.nominal, y) < DEPENDS;
             (y.clone(), if enough { ENOUGH } else { WINS })
         });
         let mut found = self.search(held.clone(), start, (0.0, 0.6), rival)?;
@@ -116,7 +113,7 @@ impl Tracks<'_, '_> {
             // many parameters are wrong: a list of causes is no way to say so
             let on_free = self.search(free.clone(), &moved, (0.2, 0.95), None);
             let on_free = on_free.and_then(|f| self.finish(Track::ParametersFree, f, free));
-            let is_enough = |of: &Finished| of.dependence < CLEAN && !of.found.full;
+            let is_enough = |of: &Finished| of.dependence < DEPENDS && !of.found.full;
             let enough = self.watch.stopped() || on_free.as_ref().is_some_and(is_enough);
             if !enough || on_free.is_none() {
                 found = self.search(held.clone(), start, (0.6, 0.95), None)?;
@@ -143,7 +140,7 @@ impl Tracks<'_, '_> {
         let hidden = trusted.found_nothing() && self.colour(&trusted.y) > COLOURED;
         // a curve is the last resort: whether moved parameters make it superfluous is asked first
         let drawn = trusted.fitted.model.added.iter().any(|added| added.cause.is_drawn());
-        let explained = settled && trusted.dependence < CLEAN && !hidden || left < SOLVED;
+        let explained = settled && trusted.dependence < DEPENDS && !hidden || left < SOLVED;
         let clean = explained && !drawn;
         let found = if clean {
             self.carried_over(&free, start, &trusted)
@@ -175,7 +172,7 @@ impl Tracks<'_, '_> {
         let left = |of: &Finished| self.problem.mean_square(&of.y, Part::All);
         let strong = trusted.found_nothing()
             && !free.found_nothing()
-            && left(&free) < STRONGER * left(&trusted);
+            && left(&free) < DOUBLY_STRONG * left(&trusted);
         let take_free = match better {
             b if b > WINS || whiter || strong => true,
             b if b < -WINS => false,

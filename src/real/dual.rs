@@ -3,6 +3,7 @@
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use super::Real;
+use super::rules::chain_rules;
 
 /// A value and its slopes along `D` directions (forward-mode differentiation).
 ///
@@ -185,33 +186,7 @@ impl<R: Real, const D: usize> Real for Dual<R, D> {
     fn constant(value: f64) -> Self {
         Self::fixed(R::constant(value))
     }
-    #[inline(always)]
-    fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
-    }
-    #[inline(always)]
-    fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
-    }
-    #[inline(always)]
-    fn tan(self) -> Self {
-        let t = self.value.tan();
-        self.chain(t, t * t + 1.0)
-    }
-    #[inline(always)]
-    fn asin(self) -> Self {
-        let rest = -(self.value * self.value) + 1.0;
-        self.chain(self.value.asin(), or_zero(rest, R::constant(1.0) / rest.sqrt()))
-    }
-    #[inline(always)]
-    fn acos(self) -> Self {
-        let rest = -(self.value * self.value) + 1.0;
-        self.chain(self.value.acos(), or_zero(rest, R::constant(-1.0) / rest.sqrt()))
-    }
-    #[inline(always)]
-    fn atan(self) -> Self {
-        self.chain(self.value.atan(), R::constant(1.0) / (self.value * self.value + 1.0))
-    }
+    chain_rules!(R);
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
         let square = self.value * self.value + x.value * x.value;
@@ -222,45 +197,6 @@ impl<R: Real, const D: usize> Real for Dual<R, D> {
             slope[d] = slope[d] * along_y - x.slope[d] * along_x;
         }
         Self { value: self.value.atan2(x.value), slope }
-    }
-    #[inline(always)]
-    fn sinh(self) -> Self {
-        self.chain(self.value.sinh(), self.value.cosh())
-    }
-    #[inline(always)]
-    fn cosh(self) -> Self {
-        self.chain(self.value.cosh(), self.value.sinh())
-    }
-    #[inline(always)]
-    fn tanh(self) -> Self {
-        let t = self.value.tanh();
-        self.chain(t, -(t * t) + 1.0)
-    }
-    #[inline(always)]
-    fn exp(self) -> Self {
-        let e = self.value.exp();
-        self.chain(e, e)
-    }
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.chain(self.value.ln(), or_zero(self.value.abs(), R::constant(1.0) / self.value))
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        self.chain(root, or_zero(root, R::constant(0.5) / root))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.chain(self.value.abs(), self.value.signum())
-    }
-    #[inline(always)]
-    fn signum(self) -> Self {
-        Self::fixed(self.value.signum())
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        -((-self).max(-other))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {

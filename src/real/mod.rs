@@ -21,6 +21,7 @@ pub mod elementary;
 pub(crate) mod fused;
 mod isa;
 mod lanes;
+mod rules;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod x86;

@@ -62,15 +62,17 @@ fn dropouts(y: &[f64]) -> Option<(f64, Vec<usize>)> {
         inside && far(s.from.checked_sub(1)) && far(Some(s.to))
     };
     // a fine scale does not meet a value inside its range time and again by chance
-    let fine = different(y) as f64 > FINE * y.len() as f64;
     let (sorted, (low, high)) = (sorted(y), range(y));
+    let fine = different(&sorted) as f64 > FINE * y.len() as f64;
+    let finest = finest(&sorted);
     let often = |same: &[&Stretch]| {
-        let value = same[0].value;
-        fine && value > low && value < high && by_chance(&sorted, value, same.len()) < CHANCE
+        let (value, count) = (same[0].value, same.len());
+        fine && value > low && value < high && by_chance(&sorted, finest, value, count) < CHANCE
     };
     let mut all: Vec<&Stretch> = all.iter().collect();
     all.sort_by(|a, b| a.value.total_cmp(&b.value));
-    let fallen = all.chunk_by(|a, b| a.value == b.value).filter_map(|same| {
+    let equal = all.chunk_by(|a, b| a.value == b.value).filter(|same| same.len() >= FALLS);
+    let fallen = equal.filter_map(|same| {
         let fell: Vec<&Stretch> = if often(same) {
             same.to_vec()
         } else {
@@ -85,10 +87,8 @@ fn dropouts(y: &[f64]) -> Option<(f64, Vec<usize>)> {
 }
 
 /// How many values a series is expected to meet `count` times, as it lies near `value` and as
-/// finely as it is written.
-fn by_chance(sorted: &[f64], value: f64, count: usize) -> f64 {
-    let steps = sorted.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 0.0);
-    let step = steps.fold(f64::INFINITY, f64::min);
+/// finely as it is written: `step` is the finest one.
+fn by_chance(sorted: &[f64], step: f64, value: f64, count: usize) -> f64 {
     let (from, to) =
         (sorted.partition_point(|v| *v < value), sorted.partition_point(|v| *v <= value));
     let (low, high) = (from.saturating_sub(NEAR), (to + NEAR).min(sorted.len()));
@@ -142,7 +142,7 @@ pub(crate) fn strike(
 ) -> (Record, Vec<Fault>) {
     let (mut mended, mut faults) = (record.clone(), vec![]);
     for signal in &mut mended.outputs {
-        if different(&signal.values) < VALUES {
+        if different(&sorted(&signal.values)) < VALUES {
             continue;
         }
         let mut found = vec![];
@@ -173,11 +173,15 @@ fn sorted(values: &[f64]) -> Vec<f64> {
     sorted
 }
 
-/// How many different values a series has.
-fn different(values: &[f64]) -> usize {
-    let mut sorted = sorted(values);
-    sorted.dedup();
-    sorted.len()
+/// How many different values a sorted series has.
+fn different(sorted: &[f64]) -> usize {
+    sorted.chunk_by(|a, b| a == b).count()
+}
+
+/// The least difference between two values of a sorted series.
+fn finest(sorted: &[f64]) -> f64 {
+    let steps = sorted.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > 0.0);
+    steps.fold(f64::INFINITY, f64::min)
 }
 
 /// Step of a converter that rounds to less than `VALUES` or so steps per standard deviation:

@@ -4,6 +4,7 @@ use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use super::{Folded, Fuse};
 use crate::real::Real;
+use crate::real::rules::chain_rules;
 
 /// What [`Dual`](crate::real::Dual) is, for kernels that the compiler sees as a whole: what
 /// does not depend on a direction costs nothing there. Kinks follow the same rule. Four named
@@ -188,78 +189,13 @@ impl<R: Fuse> Real for Sparse<R> {
     fn constant(value: f64) -> Self {
         Self::fixed(Folded::constant(value))
     }
-    #[inline(always)]
-    fn sin(self) -> Self {
-        self.chain(self.value.sin(), self.value.cos())
-    }
-    #[inline(always)]
-    fn cos(self) -> Self {
-        self.chain(self.value.cos(), -self.value.sin())
-    }
-    #[inline(always)]
-    fn tan(self) -> Self {
-        let t = self.value.tan();
-        self.chain(t, t * t + 1.0)
-    }
-    #[inline(always)]
-    fn asin(self) -> Self {
-        let rest = -(self.value * self.value) + 1.0;
-        self.chain(self.value.asin(), or_zero(rest, Folded::one() / rest.sqrt()))
-    }
-    #[inline(always)]
-    fn acos(self) -> Self {
-        let rest = -(self.value * self.value) + 1.0;
-        self.chain(self.value.acos(), or_zero(rest, -(Folded::one() / rest.sqrt())))
-    }
-    #[inline(always)]
-    fn atan(self) -> Self {
-        self.chain(self.value.atan(), Folded::one() / (self.value * self.value + 1.0))
-    }
+    chain_rules!(Folded<R>);
     #[inline(always)]
     fn atan2(self, x: Self) -> Self {
         let square = self.value * self.value + x.value * x.value;
         let along_y = or_zero(square, x.value / square);
         let along_x = or_zero(square, self.value / square);
         Self { value: self.value.atan2(x.value), slope: self.mixed(along_y, x, -along_x) }
-    }
-    #[inline(always)]
-    fn sinh(self) -> Self {
-        self.chain(self.value.sinh(), self.value.cosh())
-    }
-    #[inline(always)]
-    fn cosh(self) -> Self {
-        self.chain(self.value.cosh(), self.value.sinh())
-    }
-    #[inline(always)]
-    fn tanh(self) -> Self {
-        let t = self.value.tanh();
-        self.chain(t, -(t * t) + 1.0)
-    }
-    #[inline(always)]
-    fn exp(self) -> Self {
-        let e = self.value.exp();
-        self.chain(e, e)
-    }
-    #[inline(always)]
-    fn ln(self) -> Self {
-        self.chain(self.value.ln(), or_zero(self.value.abs(), Folded::one() / self.value))
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        let root = self.value.sqrt();
-        self.chain(root, or_zero(root, Folded::constant(0.5) / root))
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.chain(self.value.abs(), self.value.signum())
-    }
-    #[inline(always)]
-    fn signum(self) -> Self {
-        Self::fixed(self.value.signum())
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        -((-self).max(-other))
     }
     #[inline(always)]
     fn max(self, other: Self) -> Self {
