@@ -1,21 +1,23 @@
 //! Causes as plain data: numbers, sentences, shares.
 
 use super::candidate::{Candidate, Wire};
+use super::certify::{either, on_test};
 use super::error::DiagnoseError;
 use super::finding::{Alternative, Cause, Value};
+use super::finished::Finished;
 use super::floor::Floor;
 use super::nuisance::{Key, Refit, refit};
 use super::precision::standard_error;
-use super::problem::{Grain, Part};
+use super::problem::Grain;
 use super::score::{Scored, TestData, removed};
 use super::teller::Teller;
-use super::track::Finished;
 use super::words::sentence;
-use crate::statistics::normal_tail;
 
 /// Spikes below this number and this share are chance.
 const SPIKES: usize = 3;
 const SPIKE_SHARE: f64 = 5e-4;
+/// Candidates that are supposed where their number was not kept.
+const MANY: usize = 1000;
 
 impl Teller<'_, '_> {
     pub fn causes(
@@ -27,6 +29,8 @@ impl Teller<'_, '_> {
         floors: &[Option<Floor>],
     ) -> Result<Vec<Cause>, DiagnoseError> {
         let model = &chosen.fitted.model;
+        let screen = chosen.found.first.as_ref().or(chosen.found.last.as_ref());
+        let candidates = screen.map_or(MANY, |screen| screen.columns);
         let mut causes = vec![];
         for (index, added) in model.added.iter().enumerate() {
             let cause = &added.cause;
@@ -36,23 +40,19 @@ impl Teller<'_, '_> {
             } else {
                 self.refitted(chosen, &bare)
             };
-            let (share, score) = match without {
-                Some(without) => {
-                    let scored = test.score(&self.extend(&without)?)?;
-                    let y = self.problem.simulate(&without, Grain::Fine);
-                    let score = y.map_or(chosen.found.slots[index].score, |y| {
-                        self.problem.better(&y, &chosen.y, Part::Choose)
-                    });
-                    (removed(before, &scored, after, floors), score)
-                }
-                None => (removed(before, before, after, floors), chosen.found.slots[index].score),
+            let slot = &chosen.found.slots[index];
+            let without = match without {
+                Some(without) => Some(test.score(&self.extend(&without)?)?),
+                None => None,
             };
+            let without = without.as_ref().unwrap_or(before);
+            let share = removed(before, without, after, floors);
+            let p_value = either(on_test(without, after), slot.score, candidates);
             let values = self.values(chosen, index);
             let nominal = match cause.wire {
                 Wire::Parameter(p) => Some(self.problem.base.signals.parameters[p].value),
                 _ => None,
             };
-            let slot = &chosen.found.slots[index];
             let mut indistinguishable = vec![];
             for (member, gain) in &slot.set {
                 if !member.same_cause(cause) {
@@ -77,7 +77,7 @@ impl Teller<'_, '_> {
             });
             let runners_up = slot.others.iter().take(4);
             if cause.is_known_limit() {
-                causes.push(self.clipping(cause, values, share, normal_tail(score)));
+                causes.push(self.clipping(cause, values, share, p_value));
                 continue;
             }
             causes.push(Cause {
@@ -91,7 +91,7 @@ impl Teller<'_, '_> {
                     false => sentence(cause, &values, share, nominal),
                 },
                 parameters: values,
-                p_value: normal_tail(score).max(1e-300),
+                p_value,
                 error_removed: share,
                 indistinguishable,
                 runners_up: runners_up
@@ -128,7 +128,7 @@ impl Teller<'_, '_> {
             also_of: vec![],
             sentence,
             parameters: values.into_iter().map(named).collect(),
-            p_value: p_value.max(1e-300),
+            p_value,
             error_removed: share,
             indistinguishable: vec![alternative(limit, share)],
             runners_up: vec![],
@@ -196,12 +196,12 @@ impl Teller<'_, '_> {
             nuisance.free.retain(|&(q, _)| q != p);
             let models = std::slice::from_ref(&back);
             let fitted = refit(self.problem, &nuisance, models, Refit::last()).swap_remove(0);
-            let share = match fitted {
+            let (share, by_test) = match fitted {
                 Some(fitted) => {
                     let scored = test.score(&self.extend(&fitted.model)?)?;
-                    removed(before, &scored, after, floors)
+                    (removed(before, &scored, after, floors), on_test(&scored, after))
                 }
-                None => 0.0,
+                None => (0.0, 1.0),
             };
             let unit = self.problem.base.signals.parameters[p].unit.clone();
             let value =
@@ -221,7 +221,7 @@ impl Teller<'_, '_> {
                     super::words::percent(share),
                 ),
                 parameters: vec![value],
-                p_value: (2.0 * normal_tail(far)).max(1e-300),
+                p_value: either(by_test, far, 2 * chosen.nuisance.free.len()),
                 error_removed: share,
                 indistinguishable: vec![],
                 runners_up: vec![],

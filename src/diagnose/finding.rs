@@ -81,7 +81,8 @@ pub struct Cause {
     pub sentence: String,
     /// Its numbers.
     pub parameters: Vec<Value>,
-    /// Probability of a score as high without it, on the part of the data that was not fitted.
+    /// Probability of as large a share without it, valid although it was chosen among many: from
+    /// data that it was neither fitted to nor chosen on.
     pub p_value: f64,
     /// Share of the mean square above the noise floor that it removes when added last, on
     /// data used neither to fit nor to choose.
@@ -93,6 +94,28 @@ pub struct Cause {
     /// Rows of the record concerned, 1 being the first sample; only for faults of the data.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rows: Option<Vec<usize>>,
+}
+
+impl Cause {
+    /// Effect, channel and coordinate in words.
+    pub(crate) fn name(&self) -> String {
+        let of = self.of.as_ref().map_or_else(String::new, |of| format!(" of {of}"));
+        format!("{} into {}{of}", self.effect, self.into)
+    }
+}
+
+/// How many of the named causes may be false.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FalseDiscovery {
+    /// Rate at which a cause counts as confirmed.
+    pub level: f64,
+    /// Bound on the expected share of false ones among those that are confirmed (Benjamini and
+    /// Yekutieli 2001).
+    pub rate: f64,
+    /// How many are confirmed.
+    pub confirmed: usize,
+    /// Those that are not: effect, into, of.
+    pub not_confirmed: Vec<String>,
 }
 
 /// A parameter that another track moved.
@@ -208,6 +231,9 @@ pub struct Finding {
     pub before: Scores,
     /// Figures of the extended model.
     pub after: Scores,
+    /// How many of the causes in the machine may be false; absent where none is named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub false_discovery: Option<FalseDiscovery>,
     /// What was gained.
     pub gain: Gain,
     /// File of the extended model.

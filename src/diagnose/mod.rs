@@ -1,14 +1,17 @@
 //! Finds what a simulation gets wrong, names it and measures the gain.
 
 mod accept;
+mod believe;
 mod candidate;
 mod causes;
+mod certify;
 mod curves;
 mod dependence;
 mod diagnosis;
 mod error;
 mod faults;
 mod finding;
+mod finished;
 mod floor;
 mod grain;
 mod library;
@@ -45,8 +48,8 @@ pub use crate::watch::Watch;
 pub use diagnosis::{Checked, Diagnosis};
 pub use error::DiagnoseError;
 pub use finding::{
-    Alternative, Cause, Curve, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack,
-    Ranked, Scores, Series, Track, Value, Verdict,
+    Alternative, Cause, Curve, FalseDiscovery, Finding, Gain, Left, Moved, NoiseFloor, NotFound,
+    OtherTrack, Ranked, Scores, Series, Track, Value, Verdict,
 };
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
 pub(crate) use words::number;

@@ -1,12 +1,13 @@
 //! Records and a baseline, ready to be searched.
 
 use super::error::DiagnoseError;
+use super::finished::Finished;
 use super::library::Allowed;
 use super::nominal::Nominal;
 use super::nuisance::Nuisance;
 use super::problem::{Grain, Model, Problem};
 use super::records::{Joined, join};
-use super::track::{Finished, Tracks};
+use super::track::Tracks;
 use crate::data::Record;
 use crate::diagnose::Track;
 use crate::evaluate::{EvaluateError, Init, Run};

@@ -34,7 +34,8 @@ impl Search<'_, '_> {
             for i in 0..count - spare.min(count) {
                 let without = self.fitted(model.without(i));
                 let Some(y) = self.present(&without) else { continue };
-                if self.score(&y, &now) < AS_GOOD && !self.accepts(&y, &now, false) {
+                slots[i].score = self.score(&y, &now);
+                if slots[i].score < AS_GOOD && !self.accepts(&y, &now, false) {
                     *model = without;
                     slots.remove(i);
                     dropped = true;

@@ -3,9 +3,9 @@
 use super::candidate::{Candidate, Wire};
 use super::dependence::DEPENDS;
 use super::finding::{Cause, NotFound};
+use super::finished::Finished;
 use super::problem::Part;
 use super::teller::Teller;
-use super::track::Finished;
 use crate::statistics::rms;
 
 impl Teller<'_, '_> {

@@ -5,10 +5,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::candidate::Candidate;
 use super::finding::Curve;
+use super::finished::Finished;
 use super::problem::Grain;
 use super::sketch::{self, Drawing, Sketch};
 use super::teller::Teller;
-use super::track::Finished;
 use super::words::{number, percent};
 use crate::effect::{Mechanism, Needs, Role, View, curve};
 use crate::register;

@@ -30,7 +30,8 @@ pub(crate) struct Slot {
     pub set: Vec<(Arc<Candidate>, f64)>,
     /// Others that were refitted, with the share of the best's gain that they reach.
     pub others: Vec<(Arc<Candidate>, f64)>,
-    /// Score at which it was accepted.
+    /// Score of the model with it against that without it, on the part that chooses; 0 where the
+    /// two were not compared.
     pub score: f64,
 }
 
@@ -142,7 +143,7 @@ impl<'a, 'b> Search<'a, 'b> {
             if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
                 model = model.with(&cause, knobs);
                 let set = vec![(cause, 1.0)];
-                slots.push(Slot { set, others: vec![], score: ACCEPT_INDEPENDENT });
+                slots.push(Slot { set, others: vec![], score: 0.0 });
             }
         }
         model
@@ -233,7 +234,7 @@ impl<'a, 'b> Search<'a, 'b> {
                         .map(|added| Slot {
                             set: vec![(added.cause.clone(), 1.0)],
                             others: vec![],
-                            score: self.accept,
+                            score: 0.0,
                         })
                         .collect();
                     trials = pool;

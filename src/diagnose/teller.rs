@@ -4,12 +4,14 @@ use std::collections::BTreeMap;
 
 use super::candidate::Wire;
 use super::causes::alternative;
+use super::certify::false_discovery;
 use super::curves::curves;
 use super::dependence::DEPENDS;
 use super::error::DiagnoseError;
 use super::finding::{
-    Finding, Left, NoiseFloor, OtherTrack, Ranked, Scores, Series, Track, Verdict,
+    FalseDiscovery, Finding, Left, NoiseFloor, OtherTrack, Ranked, Scores, Series, Track, Verdict,
 };
+use super::finished::Finished;
 use super::floor::{predicted, repeated};
 use super::nominal::Nominal;
 use super::nuisance::{Refit, refit};
@@ -17,7 +19,6 @@ use super::problem::{Grain, Model, Part, Problem};
 use super::records::Joined;
 use super::score::{TestData, gain};
 use super::sketch;
-use super::track::Finished;
 use crate::data::Record;
 use crate::evaluate::Metrics;
 use crate::model::with_parameters;
@@ -54,6 +55,7 @@ impl Teller<'_, '_> {
         let y_before = y_before.unwrap_or_else(|| chosen.y.clone());
         let mut causes = self.causes(chosen, test, &before, &after, &floors)?;
         causes.extend(self.moved(chosen, test, &before, &after, &floors)?);
+        let false_discovery = false_discovery(&causes);
         let structural = causes.iter().filter(|cause| cause.rows.is_none()).count();
         causes.extend(self.outliers(chosen));
         let gain = gain(&before, &after, &floors);
@@ -66,6 +68,7 @@ impl Teller<'_, '_> {
             _ => Verdict::CausesFound,
         };
         let mut remarks = self.remarks(chosen, &causes);
+        remarks.extend(false_discovery.as_ref().and_then(FalseDiscovery::in_words));
         let mut series = self.series(chosen, &y_before);
         let unknown = verdict == Verdict::Unexplained && causes.is_empty();
         if let Some((curve, said)) = unknown.then(|| self.suspicion(chosen)).flatten() {
@@ -100,6 +103,7 @@ impl Teller<'_, '_> {
             noise_floor,
             before: Scores { data: data_metrics(&y_before), test: before.metrics },
             after: Scores { data: data_metrics(&chosen.y), test: after.metrics },
+            false_discovery,
             gain,
             extended_model: "extended.toml".into(),
             report: "report.html".into(),

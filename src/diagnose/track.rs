@@ -2,88 +2,27 @@
 
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector};
-
-use super::accept::DOUBLY_STRONG;
+use super::believe::WINS;
 use super::candidate::Wire;
 use super::dependence::{DEPENDS, dependence};
 use super::finding::{Moved, Track};
+use super::finished::{Finished, MOVED, moved_together};
 use super::library::Allowed;
 use super::nominal::Nominal;
-use super::nuisance::{Fitted, Key, Nuisance, Refit, refit};
+use super::nuisance::{Key, Nuisance, Refit, refit};
 use super::precision::{covariance, standard_error};
 use super::problem::{Grain, Model, Part, Problem};
 use super::search::{Found, Search, Slot};
-use crate::statistics::whiteness;
 use crate::watch::Watch;
 
-/// Standard errors beyond which a parameter counts as moved.
-const MOVED: f64 = 3.0;
-/// Score at which one track wins whatever it needs.
-const WINS: f64 = 4.0;
 /// Score at which moved parameters that leave nothing beat a single cause.
 const ENOUGH: f64 = 1.0;
 /// Causes from which on the free track is searched from its own beginning.
 const MANY: usize = 3;
 /// Share of the mean square left at which wrong parameters are no suspects any more.
 const SOLVED: f64 = 0.01;
-/// Share of the distance from white that is left where free parameters made way for a cause.
-const WHITER: f64 = 0.5;
 /// Score from which on a residual is not white.
 const COLOURED: f64 = 10.0;
-
-/// One track, finished.
-pub(crate) struct Finished {
-    pub track: Track,
-    pub found: Found,
-    /// The final fit on all data, with fine steps.
-    pub fitted: Fitted,
-    pub nuisance: Nuisance,
-    pub covariance: Option<DMatrix<f64>>,
-    pub moved: Vec<Moved>,
-    /// Whether parameters moved along a ridge, where none of them has to.
-    pub moved_together: bool,
-    /// Outputs of the final fit over all data.
-    pub y: Arc<Vec<Vec<f64>>>,
-    /// Score that what is left depends on the inputs.
-    pub dependence: f64,
-}
-
-/// Whether the free parameters, all together, are further from where they began than their
-/// errors allow: along a ridge none of them alone may be.
-fn moved_together(nuisance: &Nuisance, fitted: &Fitted, covariance: Option<&DMatrix<f64>>) -> bool {
-    let places: Vec<(usize, f64)> = nuisance
-        .free
-        .iter()
-        .filter_map(|&(p, from)| {
-            let at = fitted.keys.iter().position(|key| *key == Key::Theta(p))?;
-            Some((at, fitted.model.theta[p] - from))
-        })
-        .collect();
-    let (Some(all), false) = (covariance, places.is_empty()) else { return false };
-    let own = DMatrix::from_fn(places.len(), places.len(), |i, j| all[(places[i].0, places[j].0)]);
-    let off = DVector::from_iterator(places.len(), places.iter().map(|p| p.1));
-    // in units of each parameter's error, so that the decomposition is well scaled
-    let errors = own.diagonal().map(f64::sqrt);
-    let scaled =
-        DMatrix::from_fn(places.len(), places.len(), |i, j| own[(i, j)] / (errors[i] * errors[j]));
-    let off = off.component_div(&errors);
-    scaled.cholesky().is_some_and(|c| off.dot(&c.solve(&off)) > MOVED.powi(2) * places.len() as f64)
-}
-
-impl Finished {
-    /// Whether no cause was found but what was known before: limits of the instruments.
-    fn found_nothing(&self) -> bool {
-        self.fitted.model.added.len() == self.fitted.model.known()
-    }
-
-    /// How much it takes: causes plus parameters moved.
-    fn price(&self) -> usize {
-        let causes = self.fitted.model.added.iter();
-        let causes: usize = causes.map(|added| added.cause.price()).sum();
-        causes + self.moved.len().max(usize::from(self.moved_together))
-    }
-}
 
 /// What both tracks share.
 pub(crate) struct Tracks<'a, 'b> {
@@ -109,9 +48,9 @@ impl Tracks<'_, '_> {
             (y.clone(), if enough { ENOUGH } else { WINS })
         });
         let mut found = self.search(held.clone(), start, (0.0, 0.6), rival)?;
-        if let (true, Some((moved, _))) = (found.given_up, moved) {
+        if let (true, Some((moved, _))) = (found.given_up, &moved) {
             // many parameters are wrong: a list of causes is no way to say so
-            let on_free = self.search(free.clone(), &moved, (0.2, 0.95), None);
+            let on_free = self.search(free.clone(), moved, (0.2, 0.95), None);
             let on_free = on_free.and_then(|f| self.finish(Track::ParametersFree, f, free));
             let is_enough = |of: &Finished| of.dependence < DEPENDS && !of.found.full;
             let enough = self.watch.stopped() || on_free.as_ref().is_some_and(is_enough);
@@ -142,13 +81,21 @@ impl Tracks<'_, '_> {
         let drawn = trusted.fitted.model.added.iter().any(|added| added.cause.is_drawn());
         let explained = settled && trusted.dependence < DEPENDS && !hidden || left < SOLVED;
         let clean = explained && !drawn;
-        let found = if clean {
+        let on_free = if clean {
             self.carried_over(&free, start, &trusted)
         } else {
-            self.search(free.clone(), start, (0.6, 0.95), None)
+            let found = self.search(free.clone(), start, (0.6, 0.95), None);
+            found.and_then(|found| self.finish(Track::ParametersFree, found, free.clone()))
         };
-        let free = found.and_then(|found| self.finish(Track::ParametersFree, found, free));
-        match free {
+        let simpler = (clean && trusted.structural() > 1).then_some(moved).flatten();
+        let simpler = simpler.and_then(|(moved, _)| self.one_cause(&free, &moved));
+        let on_free = match (simpler, on_free) {
+            (Some(one), Some(many)) if one.structural() < many.structural() => {
+                Some(if self.evidence(&many, &one) > 0.0 { one } else { many })
+            }
+            (_, on_free) => on_free,
+        };
+        match on_free {
             Some(free) => Some(self.chosen(trusted, free)),
             None => Some((trusted, None)),
         }
@@ -162,29 +109,14 @@ impl Tracks<'_, '_> {
         Some((model, y))
     }
 
-    /// The track to believe, and the other one.
-    fn chosen(&self, trusted: Finished, free: Finished) -> (Finished, Option<Finished>) {
-        let better = self.problem.better(&trusted.y, &free.y, Part::Choose);
-        let whiter = trusted.found_nothing()
-            && !free.found_nothing()
-            && self.colour(&free.y) < WHITER * self.colour(&trusted.y);
-        // causes that are only seen where parameters move, and that leave little
-        let left = |of: &Finished| self.problem.mean_square(&of.y, Part::All);
-        let strong = trusted.found_nothing()
-            && !free.found_nothing()
-            && left(&free) < DOUBLY_STRONG * left(&trusted);
-        let take_free = match better {
-            b if b > WINS || whiter || strong => true,
-            b if b < -WINS => false,
-            _ => free.price() < trusted.price(),
-        };
-        if take_free { (free, Some(trusted)) } else { (trusted, Some(free)) }
-    }
-
-    /// How far the residual is from white, as a normal score.
-    fn colour(&self, y: &[Vec<f64>]) -> f64 {
-        let r = self.problem.residual(y, Part::All);
-        r.chunks(r.len() / self.problem.y.len()).map(whiteness).fold(0.0, f64::max)
+    /// The search from moved parameters for a single cause beside them, if that leaves nothing.
+    fn one_cause(&mut self, free: &Nuisance, moved: &Model) -> Option<Finished> {
+        let (allowed, watch) = (self.allowed, self.watch);
+        let mut search = Search::new(self.problem, self.nominal, free.clone(), allowed, 1, watch);
+        search.share = (0.9, 0.95);
+        let found = search.run(moved.clone())?;
+        let finished = self.finish(Track::ParametersFree, found, free.clone())?;
+        (finished.dependence < DEPENDS).then_some(finished)
     }
 
     fn search(
@@ -207,7 +139,7 @@ impl Tracks<'_, '_> {
         free: &Nuisance,
         start: &Model,
         trusted: &Finished,
-    ) -> Option<Found> {
+    ) -> Option<Finished> {
         self.watch.tell(0.9, "letting parameters move");
         let mut model = start.clone();
         model.added = trusted.fitted.model.added.clone();
@@ -224,7 +156,7 @@ impl Tracks<'_, '_> {
         model = search.fitted(model);
         search.prune_all(&mut model, &mut slots);
         let spikes = self.problem.spikes();
-        Some(Found {
+        let found = Found {
             model,
             slots,
             first: None,
@@ -233,7 +165,17 @@ impl Tracks<'_, '_> {
             spikes,
             full: false,
             given_up: false,
-        })
+        };
+        let finished = self.finish(Track::ParametersFree, found, free.clone())?;
+        if finished.moved.is_empty() {
+            return Some(finished);
+        }
+        // while parameters are held, a richer shape may make up for them
+        let mut found = finished.found;
+        let mut search =
+            Search::new(self.problem, self.nominal, free.clone(), allowed, most, watch);
+        search.settle(&mut found.model, &mut found.slots);
+        self.finish(Track::ParametersFree, found, free.clone())
     }
 
     /// The final fit on all data.

@@ -123,6 +123,14 @@ impl<'a> Report<'a> {
              RMSE over all outputs times {}.",
             100.0 * gain.error_removed, 100.0 * low, 100.0 * high, number(gain.test_rmse_ratio, None),
         ));
+        if let Some(promise) = finding.false_discovery.as_ref().filter(|f| f.confirmed > 0) {
+            page.element("p", "note", &format!(
+                "Tested on data that neither fitted nor chose it: {} of {} causes in the machine confirmed, \
+                 false discovery rate at most {}.",
+                promise.confirmed, promise.confirmed + promise.not_confirmed.len(),
+                number(promise.rate, None),
+            ));
+        }
     }
 }
 

@@ -1,0 +1,91 @@
+//! One track of the search, finished: what it found, and how much that takes.
+
+use std::sync::Arc;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::candidate::Wire;
+use super::finding::{Moved, Track};
+use super::nuisance::{Fitted, Key, Nuisance};
+use super::search::Found;
+
+/// Standard errors beyond which a parameter counts as moved.
+pub(super) const MOVED: f64 = 3.0;
+/// Natural logarithms of the number of causes to choose from, and of the values that a record
+/// tells apart within the range of a number.
+const CHOICE: f64 = 5.0;
+const NUMBER: f64 = 4.0;
+
+/// One track, finished.
+pub(crate) struct Finished {
+    pub track: Track,
+    pub found: Found,
+    /// The final fit on all data, with fine steps.
+    pub fitted: Fitted,
+    pub nuisance: Nuisance,
+    pub covariance: Option<DMatrix<f64>>,
+    pub moved: Vec<Moved>,
+    /// Whether parameters moved along a ridge, where none of them has to.
+    pub moved_together: bool,
+    /// Outputs of the final fit over all data.
+    pub y: Arc<Vec<Vec<f64>>>,
+    /// Score that what is left depends on the inputs.
+    pub dependence: f64,
+}
+
+/// Whether the free parameters, all together, are further from where they began than their
+/// errors allow: along a ridge none of them alone may be.
+pub(super) fn moved_together(
+    nuisance: &Nuisance,
+    fitted: &Fitted,
+    covariance: Option<&DMatrix<f64>>,
+) -> bool {
+    let places: Vec<(usize, f64)> = nuisance
+        .free
+        .iter()
+        .filter_map(|&(p, from)| {
+            let at = fitted.keys.iter().position(|key| *key == Key::Theta(p))?;
+            Some((at, fitted.model.theta[p] - from))
+        })
+        .collect();
+    let (Some(all), false) = (covariance, places.is_empty()) else { return false };
+    let own = DMatrix::from_fn(places.len(), places.len(), |i, j| all[(places[i].0, places[j].0)]);
+    let off = DVector::from_iterator(places.len(), places.iter().map(|p| p.1));
+    // in units of each parameter's error, so that the decomposition is well scaled
+    let errors = own.diagonal().map(f64::sqrt);
+    let scaled =
+        DMatrix::from_fn(places.len(), places.len(), |i, j| own[(i, j)] / (errors[i] * errors[j]));
+    let off = off.component_div(&errors);
+    scaled.cholesky().is_some_and(|c| off.dot(&c.solve(&off)) > MOVED.powi(2) * places.len() as f64)
+}
+
+impl Finished {
+    /// Whether no cause was found but what was known before: limits of the instruments.
+    pub(super) fn found_nothing(&self) -> bool {
+        self.fitted.model.added.len() == self.fitted.model.known()
+    }
+
+    /// Causes that are no parameters.
+    pub(super) fn structural(&self) -> usize {
+        let causes = self.fitted.model.added.iter().skip(self.fitted.model.known());
+        causes.filter(|added| !matches!(added.cause.wire, Wire::Parameter(_))).count()
+    }
+
+    /// Natural logarithm of how many stories there are that are as long: a cause is one of some
+    /// hundred, and every number is read to a part of its range.
+    pub(super) fn cost(&self) -> f64 {
+        let causes = self.fitted.model.added.iter().map(|added| match added.cause.wire {
+            Wire::Parameter(_) => NUMBER,
+            _ => CHOICE + NUMBER * added.cause.unknowns() as f64,
+        });
+        let moved = self.moved.len().max(usize::from(self.moved_together));
+        causes.sum::<f64>() + NUMBER * moved as f64
+    }
+
+    /// How much it takes: causes plus parameters moved.
+    pub(super) fn price(&self) -> usize {
+        let causes = self.fitted.model.added.iter();
+        let causes: usize = causes.map(|added| added.cause.price()).sum();
+        causes + self.moved.len().max(usize::from(self.moved_together))
+    }
+}
