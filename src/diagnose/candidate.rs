@@ -38,6 +38,8 @@ pub(crate) struct Candidate {
     pub into: String,
     pub of: Option<String>,
     pub also_into: Vec<AlsoInto>,
+    /// Further coordinates, of a learned law.
+    pub also_of: Vec<String>,
     pub wire: Wire,
     pub preference: Preference,
     /// The place alone, for ties.
@@ -78,7 +80,7 @@ impl Candidate {
 
     /// Whether two candidates carry the same name.
     pub fn same_cause(&self, other: &Self) -> bool {
-        self.triple() == other.triple()
+        self.triple() == other.triple() && self.also_of == other.also_of
     }
 
     /// Whether it is blended in by a factor from 0 to 1, having no coefficient.
@@ -96,14 +98,29 @@ impl Candidate {
         self.linear.len() + self.refine.len()
     }
 
-    /// How many plain causes it counts for: a curve of unknown shape can be nearly anything.
+    /// How many plain causes it counts for: a curve of unknown shape can be nearly anything, and
+    /// a learned law even more.
     pub fn price(&self) -> usize {
-        if self.is_drawn() { 3 } else { 1 }
+        match self.is_drawn() {
+            true if self.is_learned() => 4,
+            true => 3,
+            false => 1,
+        }
     }
 
-    /// Whether it is a curve of unknown shape.
+    /// Whether its shape is not one of the library: a free curve or a learned law.
     pub fn is_drawn(&self) -> bool {
-        self.effect == super::sketch::NAME
+        self.effect == super::sketch::NAME || self.is_learned()
+    }
+
+    /// Whether it is a learned law.
+    pub fn is_learned(&self) -> bool {
+        self.effect == super::surface::NAME
+    }
+
+    /// Everything that it depends on, the first coordinate first.
+    pub fn coordinates(&self) -> Vec<&str> {
+        self.of.iter().chain(&self.also_of).map(String::as_str).collect()
     }
 
     /// How equal explanations are ordered: the least comes first.
@@ -143,7 +160,7 @@ impl Candidate {
             into: self.into.clone(),
             of: self.of.clone(),
             also_into: self.also_into.clone(),
-            also_of: vec![],
+            also_of: self.also_of.clone(),
             effect,
         })
     }

@@ -48,7 +48,11 @@ impl Teller<'_, '_> {
             let without = without.as_ref().unwrap_or(before);
             let share = removed(before, without, after, floors);
             let p_value = either(on_test(without, after), slot.score, candidates);
-            let values = self.values(chosen, index);
+            // the weights of a learned law stand in the extended model; no number of them says anything
+            let values = match cause.is_learned() {
+                true => vec![],
+                false => self.values(chosen, index),
+            };
             let nominal = match cause.wire {
                 Wire::Parameter(p) => Some(self.problem.base.signals.parameters[p].value),
                 _ => None,
@@ -85,8 +89,9 @@ impl Teller<'_, '_> {
                 into: cause.into.clone(),
                 of: cause.of.clone(),
                 also_into: cause.also_into.iter().map(|a| a.channel().to_string()).collect(),
-                also_of: vec![],
+                also_of: cause.also_of.clone(),
                 sentence: match cause.is_drawn() {
+                    true if cause.is_learned() => self.learned_in_words(model, index, share),
                     true => self.curve_in_words(cause, &added.knobs, share),
                     false => sentence(cause, &values, share, nominal),
                 },

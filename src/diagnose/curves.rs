@@ -45,6 +45,7 @@ pub(crate) fn curves(
                 law: z.into_iter().zip(law).collect(),
                 knots,
                 cloud: vec![],
+                slices: vec![],
             })
         })
         .collect()
@@ -52,7 +53,9 @@ pub(crate) fn curves(
 
 /// The source entry of a cause that is a curve of one coordinate.
 fn source_of(problem: &Problem<'_>, cause: &Candidate) -> Option<usize> {
-    let is_curve = cause.card.mechanism == Mechanism::Law && cause.card.states == 0;
+    let is_curve = cause.card.mechanism == Mechanism::Law
+        && cause.card.states == 0
+        && cause.also_of.is_empty();
     let of = cause.of.as_deref().filter(|of| is_curve && *of != "time")?;
     match cause.wire {
         Wire::Stage(_) | Wire::Path => problem.base.sources.find(of),

@@ -301,6 +301,8 @@ pub struct Curve {
     pub knots: Vec<(f64, f64, f64)>,
     /// Estimated force at single samples.
     pub cloud: Vec<(f64, f64)>,
+    /// Of a law of two coordinates: where the other one is held, in words, and the law there.
+    pub slices: Vec<(String, Vec<(f64, f64)>)>,
 }
 
 impl std::fmt::Display for Finding {

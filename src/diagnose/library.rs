@@ -202,6 +202,7 @@ impl Builder<'_, '_> {
                 into: target_signal.name.clone(),
                 of: spot.source.map(|_| source_signal.name.clone()),
                 also_into: vec![],
+                also_of: vec![],
                 wire: if spot.own_path {
                     Wire::Path
                 } else {

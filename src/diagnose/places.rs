@@ -38,6 +38,7 @@ impl Builder<'_, '_> {
                 into: parameter.name.clone(),
                 of: (!changes).then(|| "time".into()),
                 also_into: vec![],
+                also_of: vec![],
                 preference: if changes {
                     Preference::Parameter
                 } else {

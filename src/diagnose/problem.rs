@@ -220,7 +220,8 @@ impl<'a> Problem<'a> {
             let absent: String =
                 values.iter().map(|v| if v.is_finite() { 'f' } else { 'i' }).collect();
             let also: Vec<&str> = p.also_into.iter().map(|a| a.channel()).collect();
-            format!("{}>{}<{:?}{absent}{also:?}", p.effect.typetag_name(), p.into, p.of)
+            let of = (&p.of, &p.also_of);
+            format!("{}>{}<{of:?}{absent}{also:?}", p.effect.typetag_name(), p.into)
         };
         let key = (grain, placed.iter().map(name).collect::<Vec<_>>());
         if let Some(plan) = self.plans.lock().ok()?.get(&key) {

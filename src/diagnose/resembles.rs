@@ -84,7 +84,7 @@ impl Teller<'_, '_> {
             let is_curve = own.mechanism == Mechanism::Law
                 && own.states == 0
                 && !matches!(own.needs, Needs::Time | Needs::Nothing)
-                && card.name != sketch::NAME;
+                && ![sketch::NAME, super::surface::NAME].contains(&card.name);
             if !is_curve {
                 continue;
             }

@@ -285,6 +285,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         if !given_up {
             self.shapeless(&mut model, &mut slots);
+            self.learned(&mut model, &mut slots);
         }
         self.tell(1.0, "done");
         let spikes = self.problem.spikes();

@@ -7,7 +7,7 @@ use super::library::{Builder, Spot};
 use super::nominal::Nominal;
 use super::nuisance::Nuisance;
 use super::problem::{Grain, Job, Model, Part, Problem, Span};
-use super::smooth::{Smoothed, smoothed};
+use super::smooth::{Smoothed, bends, smoothed};
 use crate::effect::{Effect, View};
 use crate::plugins::effects::free_form::FreeForm;
 use crate::statistics::project;
@@ -22,7 +22,7 @@ const FEWEST: usize = 4;
 /// Places that are looked at with other knots too.
 const LEADING: usize = 8;
 /// Probe, as a share of what moves the model as it moves anyway.
-const PROBE: f64 = 0.01;
+pub(super) const PROBE: f64 = 0.01;
 
 /// What curves are drawn from.
 pub(super) struct Drawing<'a, 'b> {
@@ -42,10 +42,10 @@ pub(super) struct Sketch {
 }
 
 /// A model, what it leaves, and what nuisance makes up for.
-struct At<'a> {
-    model: &'a Model,
-    now: Vec<f64>,
-    basis: Vec<Vec<f64>>,
+pub(super) struct At<'a> {
+    pub model: &'a Model,
+    pub now: Vec<f64>,
+    pub basis: Vec<Vec<f64>>,
 }
 
 impl Drawing<'_, '_> {
@@ -156,7 +156,7 @@ impl Drawing<'_, '_> {
             project(&at.basis, &mut column);
             columns.push(column);
         }
-        let drawn = smoothed(&columns, &left, self.problem.y.len(), &knots_of(cause))?;
+        let drawn = smoothed(&columns, &left, self.problem.y.len(), &bends(&knots_of(cause)))?;
         let Smoothed { values, errors, share } = drawn;
         Some(Sketch { cause: cause.clone(), values, errors, share })
     }

@@ -18,13 +18,13 @@ pub(super) struct Smoothed {
     pub share: f64,
 }
 
-/// Values at the knots and the share of the mean square that they predict in stretches that
-/// are left out in turn, for the weight of bends that predicts most.
+/// Values (of columns, at the knots) and the share of the mean square that they predict in stretches that
+/// are left out in turn, for the weight of what is `rough` in them that predicts most.
 pub(super) fn smoothed(
     columns: &[Vec<f64>],
     left: &[f64],
     outputs: usize,
-    knots: &[f64],
+    rough: &DMatrix<f64>,
 ) -> Option<Smoothed> {
     let (n, rows) = (columns.len(), left.len());
     let length = rows / outputs.max(1);
@@ -56,10 +56,9 @@ pub(super) fn smoothed(
     if !(scale > 0.0 && scale.is_finite() && total > 0.0) {
         return None;
     }
-    let bends = bends(knots);
     let factor = |normal: &DMatrix<f64>, weight: f64| {
         // a whisper of damping: a level that an offset can imitate has no answer of its own
-        let damped = normal + &bends * (weight * scale) + DMatrix::identity(n, n) * (1e-6 * scale);
+        let damped = normal + rough * (weight * scale) + DMatrix::identity(n, n) * (1e-6 * scale);
         damped.cholesky()
     };
     let mut best: Option<(f64, f64)> = None;
@@ -88,7 +87,7 @@ pub(super) fn smoothed(
 }
 
 /// Squares of the changes of slope at the knots, in units of their mean distance.
-fn bends(knots: &[f64]) -> DMatrix<f64> {
+pub(super) fn bends(knots: &[f64]) -> DMatrix<f64> {
     let n = knots.len();
     let mut matrix = DMatrix::zeros(n, n);
     let unit = (knots[n - 1] - knots[0]) / (n - 1) as f64;

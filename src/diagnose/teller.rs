@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use super::candidate::Wire;
 use super::causes::alternative;
 use super::certify::false_discovery;
-use super::curves::curves;
 use super::dependence::DEPENDS;
 use super::error::DiagnoseError;
 use super::finding::{
@@ -19,6 +18,7 @@ use super::problem::{Grain, Model, Part, Problem};
 use super::records::Joined;
 use super::score::{TestData, gain};
 use super::sketch;
+use super::surface;
 use crate::data::Record;
 use crate::evaluate::Metrics;
 use crate::model::with_parameters;
@@ -59,7 +59,8 @@ impl Teller<'_, '_> {
         let structural = causes.iter().filter(|cause| cause.rows.is_none()).count();
         causes.extend(self.outliers(chosen));
         let gain = gain(&before, &after, &floors);
-        let curves_only = causes.iter().all(|c| c.rows.is_some() || c.effect == sketch::NAME);
+        let is_drawn = |name: &str| name == sketch::NAME || name == surface::NAME;
+        let curves_only = causes.iter().all(|c| c.rows.is_some() || is_drawn(&c.effect));
         let verdict = match (structural, causes.len()) {
             (1.., _) if curves_only && gain.error_removed < EXPLAINED => Verdict::Unexplained,
             (0, 0) if chosen.dependence > DEPENDS => Verdict::Unexplained,
@@ -229,7 +230,7 @@ impl Teller<'_, '_> {
             segments: self.joined.drive.segments.clone(),
             split: self.problem.samples(Part::Choose).next().unwrap_or(self.problem.len()),
             flagged: chosen.found.spikes.clone(),
-            curves: curves(self.problem, self.nominal, &chosen.nuisance, &chosen.fitted.model),
+            curves: self.pictures(chosen),
         }
     }
 }

@@ -163,6 +163,9 @@ pub struct EffectCard {
     pub rank: u8,
     /// Knobs that have a fixed value where the effect acts on its own path.
     pub own_path: &'static [(&'static str, f64)],
+    /// Names and units of the coordinates that it was made for, in order, an empty text standing
+    /// for any; absent where it looks at the first one, whatever that is.
+    pub made_for: Option<Vec<(String, String)>>,
 }
 
 impl EffectCard {
@@ -177,6 +180,7 @@ impl EffectCard {
             sign: SignRule::Any,
             rank: 3,
             own_path: &[],
+            made_for: None,
         }
     }
 
@@ -198,6 +202,14 @@ impl EffectCard {
     #[must_use]
     pub fn sign(mut self, sign: SignRule) -> Self {
         self.sign = sign;
+        self
+    }
+
+    /// The same for these coordinates, by name and unit, and no others; an empty text stands for
+    /// any.
+    #[must_use]
+    pub fn made_for(mut self, coordinates: Vec<(String, String)>) -> Self {
+        self.made_for = Some(coordinates);
         self
     }
 

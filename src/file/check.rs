@@ -2,6 +2,7 @@
 
 use serde::Deserialize;
 
+use super::beside::gathered;
 use super::document::Document;
 use super::error::FileError;
 use super::node::{Node, Value};
@@ -28,6 +29,8 @@ struct Keys {
 
 /// Reads a system and checks that it can be simulated.
 pub fn system(document: &Document) -> Result<System, FileError> {
+    let gathered = gathered(document)?;
+    let document = gathered.as_ref().unwrap_or(document);
     let written = declared(document)?;
     let keys = if written.is_empty() {
         document.read()?

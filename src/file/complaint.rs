@@ -54,6 +54,22 @@ pub enum Complaint {
         /// The number.
         found: f64,
     },
+    /// A file beside a model file that cannot be read.
+    #[error("the file {file} cannot be read ({reason})")]
+    Beside {
+        /// The file.
+        file: String,
+        /// What the system said.
+        reason: String,
+    },
+    /// A file beside a model that was read from memory.
+    #[error(
+        "the file `{file}` stands beside the model file, and this model was read from memory, where there is no folder"
+    )]
+    NoFolder {
+        /// The file.
+        file: String,
+    },
     /// Anything else that a plug-in has against its own table, in its own words.
     #[error("{message}")]
     Refused {

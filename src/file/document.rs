@@ -1,7 +1,7 @@
 //! Any TOML or JSON file, with the places of its values.
 
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
@@ -61,6 +61,8 @@ impl Format {
 pub struct Document {
     source: Source,
     root: Node,
+    /// Where files beside it are; none where it was read from memory.
+    folder: Option<PathBuf>,
 }
 
 impl Document {
@@ -81,7 +83,8 @@ impl Document {
             FileError::NotUtf8 { at: Box::new(source.spot(end..end, "")), byte }
         })?;
         let format = Format::of(path, &text);
-        Self::parse(&text, &name, format)
+        let folder = path.parent().map(Path::to_path_buf);
+        Ok(Self { folder, ..Self::parse(&text, &name, format)? })
     }
 
     /// Reads a text that goes by the name `source`.
@@ -97,7 +100,7 @@ impl Document {
             Format::Json => json::read(&source.text),
         };
         let document = match root {
-            Ok(root) => Self { source, root },
+            Ok(root) => Self { source, root, folder: None },
             Err(Syntax { at, message }) => {
                 return Err(FileError::Syntax { at: Box::new(source.spot(at, "")), message });
             }
@@ -125,6 +128,16 @@ impl Document {
     /// What the document holds.
     pub(super) fn root(&self) -> &Node {
         &self.root
+    }
+
+    /// The folder that it was read from.
+    pub(super) fn folder(&self) -> Option<&Path> {
+        self.folder.as_deref()
+    }
+
+    /// The same text, holding something else.
+    pub(super) fn holding(&self, root: Node) -> Self {
+        Self { root, ..self.clone() }
     }
 
     /// The place of the value at a key path (`effects[0].into`); of the nearest table

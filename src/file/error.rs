@@ -237,6 +237,12 @@ fn complaint_hint(complaint: &Complaint) -> Option<String> {
         Complaint::Several { .. } => "keep one of them",
         Complaint::Nothing => "write the name of a model or an effect as a key of this table",
         Complaint::NotFinite { .. } => "leave a bound that does not exist out",
+        Complaint::Beside { .. } => {
+            "keep the file beside the model file, or write its path from there"
+        }
+        Complaint::NoFolder { .. } => {
+            "load the model file by its path, or write what the file holds in place of `file`"
+        }
         Complaint::Kind { .. } | Complaint::Refused { .. } => return None,
     };
     Some(text.into())

@@ -10,6 +10,7 @@
 //! nearest known name where one was misspelt, and shows the line
 //! ([`FileError::pretty`]).
 
+mod beside;
 mod check;
 mod complaint;
 mod document;

@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
+use super::beside::put_beside;
 use super::document::Format;
 use super::error::FileError;
 use super::lines;
@@ -50,7 +51,11 @@ pub fn to_toml_with(system: &System, header: &[String]) -> Result<String, FileEr
 ///
 /// As [`to_toml`].
 pub fn to_json(system: &System) -> Result<String, FileError> {
-    let text = serde_json::to_string_pretty(&Value::Object(tables(system)?));
+    json(tables(system)?)
+}
+
+fn json(tables: Map<String, Value>) -> Result<String, FileError> {
+    let text = serde_json::to_string_pretty(&Value::Object(tables));
     text.map(|text| text + "\n").map_err(|error| unwritable(&error))
 }
 
@@ -72,11 +77,16 @@ pub fn save(system: &System, path: &Path) -> Result<(), FileError> {
 /// As [`save`].
 pub fn save_with(system: &System, path: &Path, header: &[String]) -> Result<(), FileError> {
     let name = path.display().to_string();
-    let text = match Format::of(path, "") {
-        Format::Toml => to_toml_with(system, header),
-        Format::Json => to_json(system),
+    let text = || {
+        let mut tables = tables(system)?;
+        let beside = put_beside(&mut tables, path);
+        let text = match Format::of(path, "") {
+            Format::Toml => lines::model_file(&tables, header),
+            Format::Json => json(tables)?,
+        };
+        Ok((text, beside))
     };
-    let text = text.map_err(|error| match error {
+    let (text, beside) = text().map_err(|error| match error {
         FileError::Infinite { key, value, .. } => {
             FileError::Infinite { at: Box::new(Spot::file(&name)), key, value }
         }
@@ -85,8 +95,15 @@ pub fn save_with(system: &System, path: &Path, header: &[String]) -> Result<(), 
         }
         other => other,
     })?;
-    replace(path, &text)
-        .map_err(|source| FileError::Write { at: Box::new(Spot::file(&name)), source })
+    // what the model file names is there before it
+    for (path, text) in
+        beside.iter().map(|(path, text)| (path.as_path(), text)).chain([(path, &text)])
+    {
+        let name = path.display().to_string();
+        replace(path, text)
+            .map_err(|source| FileError::Write { at: Box::new(Spot::file(&name)), source })?;
+    }
+    Ok(())
 }
 
 /// Writes a text beside a file and gives it the file's name.

@@ -27,6 +27,14 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
     page.heading(&format!("{number_of}{}", title(cause)));
     for curve in finding.series.curves.iter().filter(|c| c.cause == index) {
         page.raw(&figure(curve).svg());
+        if !curve.slices.is_empty() {
+            page.element(
+                "p",
+                "note",
+                "The law that was learned, against the first of its coordinates.",
+            );
+            continue;
+        }
         page.element("p", "note",
             "What the model lacks against the coordinate: dots are estimated from the record \
              without assuming a shape (bars: two standard errors), the line is the law that was named.");
@@ -70,7 +78,7 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
         "named".into(),
         cause.effect.clone(),
         cause.into.clone(),
-        cause.of.clone().unwrap_or_default(),
+        coordinates(cause),
         share(cause.error_removed),
     ]];
     rows.extend(cause.indistinguishable.iter().map(|a| entry("looks alike", a)));
@@ -80,9 +88,15 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
 
 fn title(cause: &Cause) -> String {
     match &cause.of {
-        Some(of) => format!("{} into {} of {of}", cause.effect, cause.into),
+        Some(_) => format!("{} into {} of {}", cause.effect, cause.into, coordinates(cause)),
         None => format!("{} into {}", cause.effect, cause.into),
     }
+}
+
+/// Everything that a cause depends on.
+fn coordinates(cause: &Cause) -> String {
+    let all: Vec<&str> = cause.of.iter().chain(&cause.also_of).map(String::as_str).collect();
+    all.join(" and ")
 }
 
 /// The missing quantity against the coordinate.
@@ -96,6 +110,9 @@ pub fn figure(curve: &Curve) -> Figure {
         .height(320.0);
     let figure =
         if curve.knots.is_empty() { figure } else { figure.dots("free", "without a shape", dots) };
+    let slices = ["before", "law", "after"].into_iter().zip(&curve.slices);
+    let figure = slices
+        .fold(figure, |figure, (class, (label, points))| figure.line(class, label, points.clone()));
     if curve.law.is_empty() {
         return figure;
     }

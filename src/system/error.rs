@@ -63,6 +63,18 @@ pub enum SystemError {
         /// The coordinate.
         of: String,
     },
+    /// An effect that was made for other coordinates.
+    #[error("effect {index} ({effect}) was made for {}, and depends here on {}", .made.join(", "), .found.join(", "))]
+    MadeFor {
+        /// Position in the list of effects.
+        index: usize,
+        /// Name of the effect.
+        effect: String,
+        /// Names and units of the coordinates that it was made for.
+        made: Vec<String>,
+        /// Those that its entry names.
+        found: Vec<String>,
+    },
     /// A knob is outside its range.
     #[error("effect {index} ({effect}): `{knob}` = {value} is outside {min} to {max}")]
     KnobRange {
@@ -110,6 +122,7 @@ impl Explain for SystemError {
             Self::NoChannel { index, .. } => format!("effects[{index}].into"),
             Self::NoCoordinate { index, .. }
             | Self::MissingCoordinate { index, .. }
+            | Self::MadeFor { index, .. }
             | Self::NoRate { index, .. } => format!("effects[{index}].of"),
             Self::NotOnPath { index, .. } => format!("effects[{index}]"),
             Self::KnobRange { index, effect, knob, .. } => {
@@ -139,6 +152,10 @@ impl Explain for SystemError {
                 "declare a coordinate that is its derivative, or use a position whose velocity is a state"
                     .into()
             }
+            Self::MadeFor { made, .. } => match made.len() {
+                1 => "name that coordinate in `of`, and none in `also_of`".into(),
+                _ => "name the first of them in `of`, the others in `also_of`, in this order".into(),
+            },
             Self::KnobRange { min, max, .. } => format!("use a value from {min} to {max}"),
             Self::NameTwice { .. } => "give one of the two another name".into(),
             Self::SamplingTime(_) | Self::NoSamplingTime => {

@@ -8,6 +8,7 @@ mod arithmetic;
 mod engine;
 mod error;
 mod exact;
+mod fits;
 mod group;
 mod inputs;
 mod lane;

@@ -196,7 +196,11 @@ impl Plan {
         let origin = self.targets.entries[target].1;
         let of_itself = placed.of.is_none() && !matches!(card.needs, Needs::Nothing | Needs::Time);
         // what remembers acts at the stages, also on its own path
-        if (placed.own_path() || of_itself) && card.states == 0 {
+        if placed.of.is_some() || matches!(origin, Origin::Input(_) | Origin::Output(_)) {
+            self.fits(index, placed, card)?;
+        }
+        // what looks at something else too acts at the stages
+        if (placed.own_path() || of_itself) && card.states == 0 && placed.also_of.is_empty() {
             match origin {
                 Origin::Input(i) => return Ok(Way::InputPath(i)),
                 Origin::Output(o) => return Ok(Way::OutputPath(o)),

@@ -136,8 +136,13 @@ impl Plant {
 
     /// A record of the machine as it is modelled.
     pub fn innocent(&self, c: Conditions) -> Record {
+        self.noisy_record(&self.system(), c)
+    }
+
+    /// A record of a machine.
+    pub fn noisy_record(&self, machine: &System, c: Conditions) -> Record {
         let u = self.excitation(c.n, c.seed);
-        let y = self.clean(&self.system(), &u).unwrap();
+        let y = self.clean(machine, &u).unwrap();
         self.record(&u, &self.noisy(&y, &y, c))
     }
 

@@ -1,0 +1,153 @@
+//! The last resort: a law that is learned, of one or two coordinates, where what is left depends
+//! on the inputs and no shape and no free curve accounts for it.
+
+use std::sync::Arc;
+
+use super::dependence::{DEPENDS, dependence};
+use super::library::{Allowed, library};
+use super::nuisance::{Fitted, Refit, refit};
+use super::problem::{Added, Grain, Model, Part};
+use super::readback::read;
+use super::search::{Search, Slot};
+use super::sets::{AS_GOOD, headed_by};
+use super::sketch::Drawing;
+use super::stage::{REFITTED, Trial, stage, trial};
+use super::surface::{NAME, Surface};
+use super::train::start;
+use crate::statistics::{corrected_score, dot};
+
+/// Laws that are trained, and from how many first weights each.
+const TRAINED: usize = 3;
+const SEEDS: [u64; 2] = [1, 2];
+/// Share of what is left that a law must predict where it was not fitted.
+const WORTH: f64 = 0.02;
+/// Share of the mean square that it may leave where a free curve explains the rest.
+const BETTER: f64 = 0.8;
+/// Share of the dependence on the inputs that may be left.
+const LESS: f64 = 0.5;
+
+/// Learned laws on top of a model, best first.
+struct Learned {
+    without: Arc<Vec<Vec<f64>>>,
+    trials: Vec<Trial>,
+    /// How many laws were looked at.
+    tried: usize,
+}
+
+impl Search<'_, '_> {
+    /// Adds a learned law where that is what is left, or puts it in place of everything that was
+    /// named; one that turns out to be a shape of the library gives way to that.
+    pub(super) fn learned(&mut self, model: &mut Model, slots: &mut Vec<Slot>) -> bool {
+        if self.most == 0 || self.watch.stopped() || !self.allowed.effect(NAME) {
+            return false;
+        }
+        let Some(before) = self.present(model) else { return false };
+        let depends = dependence(self.problem, self.nominal, &before);
+        let asked = self.allowed.only.iter().any(|name| name == NAME);
+        // a law that has a name stays: only what nothing explains, or a curve badly, is learned
+        let named = |a: &Added| !a.cause.is_known_limit() && !a.cause.is_drawn();
+        let open = depends >= DEPENDS && !model.added.iter().any(named);
+        if self.is_noise(&before) || !asked && !open {
+            return false;
+        }
+        self.tell(0.97, "learning a law");
+        let held = self.problem.mean_square(&before, Part::Choose);
+        let drawn = model.added.iter().any(|a| a.cause.is_drawn());
+        let most = if drawn { BETTER * held } else { held };
+        let worth = |learned: &Learned| {
+            learned.trials[0].held < most && self.is_learned_well(&before, depends, learned)
+        };
+        let room = slots.len() < self.most;
+        let onto = room.then(|| self.best_law(model)).flatten().filter(worth);
+        let stays: Vec<bool> = model.added.iter().map(|a| a.cause.is_known_limit()).collect();
+        let bare = stays.contains(&false).then(|| {
+            let mut bare = model.clone();
+            bare.added.retain(|added| added.cause.is_known_limit());
+            self.fitted(bare)
+        });
+        let instead = bare.and_then(|bare| self.best_law(&bare)).filter(|alone| match &onto {
+            Some(onto) => {
+                alone.trials[0].held < most
+                    && self.score(&alone.trials[0].y, &onto.trials[0].y) < AS_GOOD
+            }
+            None => worth(alone),
+        });
+        if instead.is_some() {
+            let mut stays = stays.into_iter();
+            slots.retain(|_| stays.next().unwrap_or(false));
+        }
+        let Some(Learned { without, trials, .. }) = instead.or(onto) else { return false };
+        let best = &trials[0];
+        let (_, slot) = self.choose(&trials, self.problem.mean_square(&without, Part::Choose));
+        let score = self.score(&without, &best.y);
+        slots.push(Slot { score, ..headed_by(slot, &best.cause) });
+        *model = best.model.clone();
+        self.by_its_name(model, slots, &trials[0]);
+        self.prune(model, slots, 1);
+        true
+    }
+
+    /// Whether a law is an improvement worth a cause, among as many as were tried, and leaves
+    /// clearly less that depends on the inputs.
+    fn is_learned_well(&self, before: &[Vec<f64>], depends: f64, learned: &Learned) -> bool {
+        let y = &learned.trials[0].y;
+        let enough = self.score(before, y) >= corrected_score(learned.tried)
+            || self.is_doubly_strong(before, y);
+        enough
+            && self.accepts(before, y, false)
+            && dependence(self.problem, self.nominal, y) < DEPENDS.max(LESS * depends)
+    }
+
+    /// The best learned laws on top of a model.
+    fn best_law(&self, model: &Model) -> Option<Learned> {
+        let y = self.present(model)?;
+        let drawing =
+            Drawing { problem: self.problem, nominal: self.nominal, nuisance: &self.nuisance };
+        let (mut surfaces, tried) = drawing.surfaces(model, &y);
+        surfaces.retain(|surface| surface.share > WORTH);
+        surfaces.truncate(TRAINED);
+        let (mut starts, mut of): (Vec<Model>, Vec<&Surface>) = (vec![], vec![]);
+        for surface in &surfaces {
+            for knobs in SEEDS.iter().filter_map(|&seed| start(surface, self.nominal, seed)) {
+                starts.push(model.with(&surface.cause, knobs));
+                of.push(surface);
+            }
+        }
+        let fitted = refit(self.problem, &self.nuisance, &starts, Refit::search());
+        let mut trials: Vec<Trial> = vec![];
+        for surface in &surfaces {
+            let squares = |f: &Fitted| dot(&f.residuals, &f.residuals);
+            let own = fitted.iter().zip(&of).filter(|(_, s)| Arc::ptr_eq(&s.cause, &surface.cause));
+            let own = own.filter_map(|(fitted, _)| fitted.as_ref());
+            let Some(best) = own.min_by(|a, b| squares(a).total_cmp(&squares(b))) else { continue };
+            let y = self.problem.simulate(&best.model, Grain::Coarse);
+            trials.extend(trial(self.problem, &surface.cause, best.model.clone(), y, false));
+        }
+        trials.sort_by(|a, b| a.held.total_cmp(&b.held));
+        (!trials.is_empty()).then_some(Learned { without: y, trials, tried })
+    }
+
+    /// Puts a shape of the library in the place of a learned law that is nothing else.
+    fn by_its_name(&self, model: &mut Model, slots: &mut [Slot], learned: &Trial) {
+        let index = model.added.len() - 1;
+        let Some(reading) = read(self.problem, model, index) else { return };
+        let Some((effect, of)) = reading.is_shape() else { return };
+        let bare = self.fitted(model.without(index));
+        let only = Allowed { only: vec![effect.into()], ..Allowed::default() };
+        let all = library(self.problem, self.nominal, &bare, vec![], &only);
+        let here = |c: &Arc<super::candidate::Candidate>| {
+            c.into == learned.cause.into && c.of.as_deref() == of && c.also_into.is_empty()
+        };
+        let members: Vec<_> = all.into_iter().filter(here).collect();
+        let found = stage(self.problem, &self.nuisance, &bare, &members, false, REFITTED);
+        let Some(named) = found.and_then(|found| found.trials.into_iter().next()) else { return };
+        if self.score(&named.y, &learned.y) < AS_GOOD
+            && let Some(slot) = slots.last_mut()
+        {
+            let others = std::mem::take(&mut slot.set);
+            slot.others.splice(0..0, others);
+            slot.set = vec![(named.cause.clone(), 1.0)];
+            *model = named.model;
+        }
+    }
+}
