@@ -11,7 +11,7 @@ pub(super) const WINS: f64 = 4.0;
 /// Share of the distance from white that is left where free parameters made way for a cause.
 const WHITER: f64 = 0.5;
 /// Natural logarithm of the odds that parameters are right, before anything is measured.
-const DOUBTED: f64 = 4.0;
+const DOUBTED: f64 = 2.0;
 
 impl Tracks<'_, '_> {
     /// The track to believe, and the other one.
@@ -31,7 +31,7 @@ impl Tracks<'_, '_> {
             // no more causes, but beside moved parameters: what each story takes is weighed
             // against how much better it is
             _ if (1..=trusted.structural()).contains(&free.structural()) => {
-                self.evidence(&trusted, &free) > DOUBTED
+                !free.moved.is_empty() && self.evidence(&trusted, &free) > DOUBTED
             }
             _ => free.price() < trusted.price(),
         };

@@ -5,22 +5,22 @@ use std::time::Instant;
 use super::dependence::DEPENDS;
 use super::error::DiagnoseError;
 use super::faults::{Fault, flipped, retimed, strike};
-use super::finding::{Cause, Finding, Track};
+use super::finding::{Finding, Track};
 use super::library::Allowed;
 use super::prepared::{Prepared, windows};
 use super::score::TestData;
+use super::stretches::horizon;
 use super::teller::Teller;
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run, Simulation};
-use crate::statistics::normal_tail;
 use crate::system::System;
 use crate::watch::Watch;
 
 /// Share of the estimation data that is fitted; the rest chooses.
-const FIT: f64 = 0.7;
+pub(super) const FIT: f64 = 0.7;
 /// Shares when the estimation data must serve as test data too.
 const FIT_OF_ALL: f64 = 0.6;
-const TEST_OF_ALL: f64 = 0.2;
+pub(super) const TEST_OF_ALL: f64 = 0.2;
 /// A cause in the machine explains as much as a wrong clock if it removes so much less at most.
 const AS_MUCH: f64 = 0.02;
 
@@ -48,9 +48,9 @@ struct Mended {
 /// ```
 #[derive(Debug, Clone)]
 pub struct Diagnosis<'a> {
-    system: &'a System,
-    allowed: Allowed,
-    max_causes: usize,
+    pub(super) system: &'a System,
+    pub(super) allowed: Allowed,
+    pub(super) max_causes: usize,
     init: Init,
 }
 
@@ -131,6 +131,14 @@ impl<'a> Diagnosis<'a> {
         self.check_names()?;
         for record in records {
             self.check_baseline(record)?;
+        }
+        if let Some(length) = horizon(self.system, records)? {
+            let mut finding = self.by_stretches(records, test, length, watch)?;
+            finding.coarse(records);
+            finding.interrupted = watch.stopped();
+            watch.tell(1.0, "done");
+            finding.seconds = started.elapsed().as_secs_f64();
+            return Ok(finding);
         }
         let mended = self.mended(records, test)?;
         let clock = retimed(self.system, &mended.records)?;
@@ -214,24 +222,33 @@ impl<'a> Diagnosis<'a> {
         let kept: Vec<Record>;
         let (used, test, share) = match test {
             Some(record) => {
-                let test = TestData { records: vec![record.clone()], from: None, init: self.init };
+                let test = TestData {
+                    records: vec![record.clone()],
+                    from: None,
+                    init: self.init,
+                    stretches: false,
+                };
                 (records, test, FIT)
             }
             None => {
                 let end = |r: &Record| ((1.0 - TEST_OF_ALL) * r.len() as f64) as usize;
                 kept = records.iter().map(|r| r.slice(0..end(r))).collect();
                 let from = records.iter().map(end).collect();
-                let test =
-                    TestData { records: records.to_vec(), from: Some(from), init: self.init };
+                let test = TestData {
+                    records: records.to_vec(),
+                    from: Some(from),
+                    init: self.init,
+                    stretches: false,
+                };
                 (&kept[..], test, FIT_OF_ALL / (1.0 - TEST_OF_ALL))
             }
         };
-        let mut whole = Prepared::new(self.system, used, share)?;
+        let mut whole = Prepared::new(self.system, used, share, Init::Forgotten)?;
         let windows = windows(used);
         let (chosen, other) = match &windows {
             None => whole.search(&self.allowed, most, watch)?,
             Some(windows) => {
-                let mut part = Prepared::new(self.system, windows, share)?;
+                let mut part = Prepared::new(self.system, windows, share, Init::Forgotten)?;
                 let (chosen, other) = part.search(&self.allowed, most, watch)?;
                 watch.tell(0.95, "fitting to all samples");
                 let chosen = whole.finish(&self.allowed, chosen)?;
@@ -246,21 +263,6 @@ impl<'a> Diagnosis<'a> {
             joined: &whole.joined,
         };
         teller.tell(&whole.start, &chosen, other.as_ref(), &test, used)
-    }
-
-    /// Asks whether records reject the system at all.
-    ///
-    /// # Errors
-    ///
-    /// As [`run`](Self::run).
-    pub fn check(&self, records: &[Record], watch: &dyn Watch) -> Result<Checked, DiagnoseError> {
-        let finding = self.run(records, None, watch)?;
-        let of_the_model = finding.causes.iter().find(|cause| cause.rows.is_none());
-        // what no name was found for counts by its dependence on the inputs
-        let p_value =
-            of_the_model.map_or_else(|| normal_tail(finding.left.dependence), |c| c.p_value);
-        let first_cause = of_the_model.or(finding.causes.first()).cloned();
-        Ok(Checked { p_value, first_cause, interrupted: finding.interrupted })
     }
 
     /// Says at which sample a baseline leaves the finite numbers, if it does.
@@ -281,15 +283,4 @@ impl<'a> Diagnosis<'a> {
             None => Ok(()),
         }
     }
-}
-
-/// Whether records reject a system.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Checked {
-    /// Probability of data as far from the system's simulation if the system were right.
-    pub p_value: f64,
-    /// What would explain most, if anything was found.
-    pub first_cause: Option<Cause>,
-    /// Whether somebody stopped the search.
-    pub interrupted: bool,
 }

@@ -44,6 +44,16 @@ pub enum DiagnoseError {
         /// Names there are.
         known: Vec<String>,
     },
+    /// Nothing is left of the records when they are cut.
+    #[error(
+        "{record}: errors of the model's start grow a hundredfold within {length} samples, and the record has no {length} samples without a gap"
+    )]
+    TooUnstable {
+        /// Name of the record.
+        record: String,
+        /// Samples of a stretch.
+        length: usize,
+    },
     /// The extended model could not be written down.
     #[error("the extended model cannot be written: {reason}")]
     Extend {
@@ -65,7 +75,9 @@ impl Explain for DiagnoseError {
     fn place(&self) -> Place {
         match self {
             Self::Evaluate(error) => error.place(),
-            Self::NothingMeasured { record, .. } | Self::Steps { record, .. } => {
+            Self::NothingMeasured { record, .. }
+            | Self::Steps { record, .. }
+            | Self::TooUnstable { record, .. } => {
                 Place { file: Some(record.clone()), ..Place::default() }
             }
             Self::NoEffect { name } | Self::NoParameter { name, .. } => {
@@ -96,6 +108,10 @@ impl Explain for DiagnoseError {
                     Some(near) => format!("did you mean `{near}`? There are: {}", known.join(", ")),
                     None => format!("there are: {}", known.join(", ")),
                 }
+            }
+            Self::TooUnstable { .. } => {
+                "take a longer record, or a shorter step: the machine has to be watched while it is held up"
+                    .into()
             }
             Self::Extend { .. } => {
                 "every parameter must be a field of the model, or be mapped by `Physics::key`"

@@ -7,10 +7,12 @@ use nalgebra::{DMatrix, DVector};
 use super::candidate::Wire;
 use super::finding::{Moved, Track};
 use super::nuisance::{Fitted, Key, Nuisance};
+use super::precision::standard_error;
 use super::search::Found;
+use crate::model::Signals;
 
 /// Standard errors beyond which a parameter counts as moved.
-pub(super) const MOVED: f64 = 3.0;
+const MOVED: f64 = 3.0;
 /// Natural logarithms of the number of causes to choose from, and of the values that a record
 /// tells apart within the range of a number.
 const CHOICE: f64 = 5.0;
@@ -59,10 +61,33 @@ pub(super) fn moved_together(
     scaled.cholesky().is_some_and(|c| off.dot(&c.solve(&off)) > MOVED.powi(2) * places.len() as f64)
 }
 
+impl Moved {
+    /// Distance in standard errors.
+    pub(super) fn distance(&self) -> f64 {
+        self.std_error.map_or(0.0, |error| (self.to - self.from).abs() / error)
+    }
+
+    /// Whether it is further than its error allows.
+    pub(super) fn is_far(&self) -> bool {
+        self.distance() > MOVED
+    }
+}
+
 impl Finished {
     /// Whether no cause was found but what was known before: limits of the instruments.
     pub(super) fn found_nothing(&self) -> bool {
         self.fitted.model.added.len() == self.fitted.model.known()
+    }
+
+    /// Where the free parameters went.
+    pub(super) fn went(&self, signals: &Signals) -> Vec<Moved> {
+        let one = |&(p, from): &(usize, f64)| Moved {
+            name: signals.parameters[p].name.clone(),
+            from,
+            to: self.fitted.model.theta[p],
+            std_error: standard_error(&self.fitted, self.covariance.as_ref(), Key::Theta(p)),
+        };
+        self.nuisance.free.iter().map(one).collect()
     }
 
     /// Causes that are no parameters.

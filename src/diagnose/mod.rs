@@ -5,6 +5,7 @@ mod believe;
 mod candidate;
 mod causes;
 mod certify;
+mod checked;
 mod curves;
 mod dependence;
 mod diagnosis;
@@ -32,6 +33,7 @@ mod readback;
 mod records;
 mod remarks;
 mod resembles;
+mod ridge;
 mod scan;
 mod score;
 mod screen;
@@ -42,15 +44,18 @@ mod sketch;
 mod smooth;
 mod spikes;
 mod stage;
+mod stretches;
 mod surface;
 mod teller;
 mod tensor;
+mod together;
 mod track;
 mod train;
 mod words;
 
 pub use crate::watch::Watch;
-pub use diagnosis::{Checked, Diagnosis};
+pub use checked::Checked;
+pub use diagnosis::Diagnosis;
 pub use error::DiagnoseError;
 pub use finding::{
     Alternative, Cause, Curve, FalseDiscovery, Finding, Gain, Left, Moved, NoiseFloor, NotFound,

@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use super::nominal::Nominal;
-use super::problem::{Grain, Job, Model, Part, Problem, Span};
+use super::problem::{Grain, Job, Model, Part, Problem, Simulated, Span};
+use super::together::Together;
 use crate::optimise::{Settings, Unknown};
 use crate::statistics::add_to_basis;
 
@@ -22,7 +23,7 @@ pub(crate) enum Key {
 /// Priors of re-estimated parameters: this share of their value.
 const PRIOR: f64 = 0.15;
 /// Segments whose initial states are estimated at most.
-const SEGMENTS: usize = 24;
+pub(super) const SEGMENTS: usize = 120;
 
 /// The moving parts of models, with scales and priors.
 #[derive(Debug, Clone)]
@@ -124,18 +125,28 @@ impl Nuisance {
     pub fn basis(&self, problem: &Problem<'_>, model: &Model, y0: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let keys = self.keys(model);
         let r0 = problem.residual(y0, Part::Fit);
-        let mut jobs: Vec<Job> = vec![];
-        for &key in &keys {
-            let mut moved = model.clone();
+        let at: Vec<f64> = keys.iter().map(|&key| get(model, key)).collect();
+        let alone = |(j, &key): (usize, &Key)| {
             let unknown = self.unknown(problem, model, key);
             let step = 2e-3 * unknown.scale;
             let room = unknown.bounds.1 - unknown.start;
-            set(&mut moved, key, unknown.start + if room < step { -step } else { step });
-            jobs.extend(problem.job(&moved, Grain::Coarse));
-        }
+            let mut point = at.clone();
+            point[j] = unknown.start + if room < step { -step } else { step };
+            point
+        };
+        let alone: Vec<Vec<f64>> = keys.iter().enumerate().map(alone).collect();
+        let together = Together::new(&keys);
+        let job = |point: &Vec<f64>| {
+            let mut moved = model.clone();
+            keys.iter().zip(point).for_each(|(&key, &value)| set(&mut moved, key, value));
+            problem.job(&moved, Grain::Coarse)
+        };
+        let jobs: Option<Vec<Job>> = together.points(&at, &alone).iter().map(job).collect();
+        let Some(jobs) = jobs else { return vec![] };
+        let residual = |y: Simulated| y.map(|y| problem.residual(&y, Part::Fit));
+        let answers = problem.run(&jobs, Span::Fit).into_iter().map(residual).collect();
         let mut basis: Vec<Vec<f64>> = vec![];
-        for y in problem.run(&jobs, Span::Fit).into_iter().flatten() {
-            let r = problem.residual(&y, Part::Fit);
+        for r in together.apart(&keys, problem, Part::Fit, &r0, answers).into_iter().flatten() {
             let column = r0.iter().zip(&r).map(|(a, b)| a - b).collect();
             add_to_basis(&mut basis, column);
         }
@@ -227,7 +238,10 @@ pub(crate) fn refit(
         let mut jobs = vec![];
         let mut counts = vec![];
         for ((keys, run), model) in runs.iter_mut().zip(models) {
-            let points = run.propose();
+            let mut points = run.propose();
+            if run.wants_columns() {
+                points = Together::new(keys).points(&run.point, &points);
+            }
             counts.push(points.len());
             for point in points {
                 let Some(job) = problem.job(&moved(model, keys, &point), how.grain) else {
@@ -243,7 +257,7 @@ pub(crate) fn refit(
             break;
         }
         let mut answers = problem.run(&jobs, span).into_iter();
-        for ((_, run), count) in runs.iter_mut().zip(counts) {
+        for ((keys, run), count) in runs.iter_mut().zip(counts) {
             if count == 0 {
                 run.absorb(vec![None]);
                 continue;
@@ -253,7 +267,12 @@ pub(crate) fn refit(
                 r.iter().all(|v| v.is_finite()).then_some(r)
             };
             let own: Vec<_> = answers.by_ref().take(count).map(residual).collect();
-            run.absorb(own);
+            if run.wants_columns() {
+                let present = &run.residuals;
+                run.absorb(Together::new(keys).apart(keys, problem, part, present, own));
+            } else {
+                run.absorb(own);
+            }
         }
     }
     runs.into_iter()

@@ -51,8 +51,14 @@ pub(crate) struct Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    /// Joins records, of each of which the first `share` is fitted and the rest chooses.
-    pub fn new(system: &'a System, records: &[Record], share: f64) -> Result<Self, DiagnoseError> {
+    /// Joins records, of each of which the first `share` is fitted and the rest chooses; `init`
+    /// says how much of each finds its start.
+    pub fn new(
+        system: &'a System,
+        records: &[Record],
+        share: f64,
+        init: Init,
+    ) -> Result<Self, DiagnoseError> {
         let joined = join(&system.signals(), records)?;
         let (step, drive) = (joined.sampling_time, joined.drive.clone());
         let problem = Problem::new(system, step, drive, &joined.measured, &joined.spans, share);
@@ -62,7 +68,7 @@ impl<'a> Prepared<'a> {
             .iter()
             .map(|record| {
                 let run = Run::new(system, record)?;
-                Ok(run.starts(run.init_samples(Init::Forgotten)))
+                Ok(run.starts(run.init_samples(init)))
             })
             .collect::<Result<Vec<_>, EvaluateError>>()?
             .concat();

@@ -16,6 +16,9 @@ pub(crate) struct TestData {
     /// record of its own, whose start is found from its first samples.
     pub from: Option<Vec<usize>>,
     pub init: Init,
+    /// Whether the records are stretches, each of which finds its start from all its samples,
+    /// and all of which count.
+    pub stretches: bool,
 }
 
 /// A model's errors on the test data.
@@ -35,8 +38,12 @@ impl TestData {
             let run = Run::new(system, record)?;
             let count = run.init_samples(self.init);
             // the part before the test data may find the start, all of it
-            let from = self.from.as_ref().map_or(count, |from| from[r]);
-            let track = run.track(run.starts(if self.from.is_some() { from } else { count }));
+            let (from, fitted) = match &self.from {
+                _ if self.stretches => (0, record.len()),
+                Some(from) => (from[r], from[r]),
+                None => (count, count),
+            };
+            let track = run.track(run.starts(fitted));
             for (o, measured) in run.measured.iter().enumerate() {
                 let Some(measured) = measured else { continue };
                 for k in from..measured.len() {

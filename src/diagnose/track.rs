@@ -6,11 +6,11 @@ use super::believe::WINS;
 use super::candidate::Wire;
 use super::dependence::{DEPENDS, dependence};
 use super::finding::{Moved, Track};
-use super::finished::{Finished, MOVED, moved_together};
+use super::finished::{Finished, moved_together};
 use super::library::Allowed;
 use super::nominal::Nominal;
-use super::nuisance::{Key, Nuisance, Refit, refit};
-use super::precision::{covariance, standard_error};
+use super::nuisance::{Nuisance, Refit, refit};
+use super::precision::covariance;
 use super::problem::{Grain, Model, Part, Problem};
 use super::search::{Found, Search, Slot};
 use crate::watch::Watch;
@@ -38,6 +38,11 @@ pub(crate) struct Tracks<'a, 'b> {
 impl Tracks<'_, '_> {
     /// Searches both tracks; the chosen one comes first.
     pub fn run(mut self) -> Option<(Finished, Option<Finished>)> {
+        let (chosen, other) = self.both()?;
+        Some((self.off_the_ridge(chosen)?, other))
+    }
+
+    fn both(&mut self) -> Option<(Finished, Option<Finished>)> {
         let start = self.start;
         let held = Nuisance::new(self.problem, self.nominal);
         let free = held.clone().with_parameters(self.problem, &self.allowed.fixed);
@@ -185,29 +190,22 @@ impl Tracks<'_, '_> {
                 .swap_remove(0)?;
         let y = self.problem.simulate(&fitted.model, Grain::Fine)?;
         let covariance = covariance(self.problem, &nuisance, &fitted);
-        let moved = nuisance
-            .free
-            .iter()
-            .filter_map(|&(p, from)| {
-                let to = fitted.model.theta[p];
-                let error = standard_error(&fitted, covariance.as_ref(), Key::Theta(p));
-                let far = error.is_some_and(|e| (to - from).abs() > MOVED * e);
-                let name = self.problem.base.signals.parameters[p].name.clone();
-                far.then_some(Moved { name, from, to, std_error: error })
-            })
-            .collect();
         let moved_together = moved_together(&nuisance, &fitted, covariance.as_ref());
         let dependence = dependence(self.problem, self.nominal, &y);
-        Some(Finished {
+        let mut finished = Finished {
             track,
             found,
             fitted,
             nuisance,
             covariance,
-            moved,
+            moved: vec![],
             moved_together,
             y,
             dependence,
-        })
+        };
+        let mut moved = finished.went(&self.problem.base.signals);
+        moved.retain(Moved::is_far);
+        finished.moved = moved;
+        Some(finished)
     }
 }

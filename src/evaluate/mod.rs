@@ -1,6 +1,7 @@
 //! Says how wrong a model is, in the output's unit.
 
 mod error;
+mod forgetting;
 mod metric;
 mod run;
 mod simulate;

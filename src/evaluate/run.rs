@@ -93,7 +93,7 @@ impl<'a> Run<'a> {
         drive
     }
 
-    fn lane(&self, starts: Vec<Vec<f64>>) -> Lane {
+    pub(super) fn lane(&self, starts: Vec<Vec<f64>>) -> Lane {
         Lane {
             theta: self.plan.signals.theta(),
             knobs: self.plan.knob_values(),
@@ -169,7 +169,12 @@ impl<'a> Run<'a> {
             .collect()
     }
 
-    fn start_of(&self, segment: std::ops::Range<usize>, origin: usize, count: usize) -> Vec<f64> {
+    pub(super) fn start_of(
+        &self,
+        segment: std::ops::Range<usize>,
+        origin: usize,
+        count: usize,
+    ) -> Vec<f64> {
         let initial = self.plan.signals.initial();
         let end = (segment.start + count).min(segment.end);
         let drive = Drive {
@@ -199,7 +204,7 @@ impl<'a> Run<'a> {
     }
 
     /// Sizes of the states: their initial values, their course, or 1.
-    fn state_scales(&self, drive: &Drive, initial: &[f64]) -> Vec<f64> {
+    pub(super) fn state_scales(&self, drive: &Drive, initial: &[f64]) -> Vec<f64> {
         use crate::system::Origin;
         let seen = self.system.run_seen(&self.plan, drive, &self.lane(vec![initial.to_vec()]));
         (0..initial.len())

@@ -1,0 +1,126 @@
+//! Systems that do not forget where they start: unstable and chaotic ones. Their records are cut
+//! into stretches short enough to be simulated in one go, each with a start of its own (multiple
+//! shooting: Bock, 1981).
+
+use super::diagnosis::{Diagnosis, FIT, TEST_OF_ALL};
+use super::error::DiagnoseError;
+use super::faults::strike;
+use super::finding::Finding;
+use super::nuisance::SEGMENTS;
+use super::prepared::Prepared;
+use super::score::TestData;
+use super::teller::Teller;
+use crate::data::Record;
+use crate::evaluate::{EvaluateError, Init, Run};
+use crate::system::System;
+use crate::watch::Watch;
+
+/// Samples over which every record can be simulated in one go; `None` where that is all of it.
+pub(crate) fn horizon(system: &System, records: &[Record]) -> Result<Option<usize>, EvaluateError> {
+    let mut shortest: Option<usize> = None;
+    for record in records {
+        if let Some(length) = Run::new(system, record)?.horizon() {
+            shortest = Some(shortest.map_or(length, |least| least.min(length)));
+        }
+    }
+    Ok(shortest)
+}
+
+/// Stretches of a length of records, at most `most`, spread over all of them.
+fn cut(records: &[Record], length: usize, most: usize) -> Vec<Record> {
+    let all: Vec<(&Record, usize)> = records
+        .iter()
+        .flat_map(|record| {
+            let inside = |from: &usize| {
+                // a stretch with a gap in it would be two
+                record.segments.iter().any(|s| s.contains(from) && s.end >= from + length)
+            };
+            let starts = record.segments.iter().flat_map(|s| s.clone().step_by(length));
+            starts.filter(inside).map(move |from| (record, from)).collect::<Vec<_>>()
+        })
+        .collect();
+    let every = all.len().div_ceil(most.max(1)).max(1);
+    let kept = all.into_iter().step_by(every);
+    kept.map(|(record, from)| record.slice(from..from + length)).collect()
+}
+
+impl Diagnosis<'_> {
+    /// The diagnosis of records that are cut into stretches.
+    pub(super) fn by_stretches(
+        &self,
+        records: &[Record],
+        test: Option<&Record>,
+        length: usize,
+        watch: &dyn Watch,
+    ) -> Result<Finding, DiagnoseError> {
+        let end = |r: &Record| ((1.0 - TEST_OF_ALL) * r.len() as f64) as usize;
+        let (used, tested) = match test {
+            Some(record) => (records.to_vec(), vec![record.clone()]),
+            None => (
+                records.iter().map(|r| r.slice(0..end(r))).collect(),
+                records.iter().map(|r| r.slice(end(r)..r.len())).collect(),
+            ),
+        };
+        let (mut used, mut faults, mut before) = (used, vec![], 0);
+        for record in &mut used {
+            let run = Run::new(self.system, record)?;
+            let y = run.in_stretches(length);
+            let (mended, found) = strike(record, &y, before);
+            before += record.len();
+            *record = mended;
+            faults.extend(found);
+        }
+        let stretches = cut(&used, length, SEGMENTS);
+        let tested = cut(&tested, length, usize::MAX);
+        let (Some(first), false) = (stretches.first(), tested.is_empty()) else {
+            let source = records.first().map_or_else(String::new, |r| r.source.clone());
+            return Err(DiagnoseError::TooUnstable { record: source, length });
+        };
+        let step = first.sampling_time;
+        let count = stretches.len();
+        let mut prepared = Prepared::new(self.system, &stretches, FIT, Init::Samples(usize::MAX))?;
+        let (chosen, other) = prepared.search(&self.allowed, self.max_causes, watch)?;
+        watch.tell(0.97, "measuring the gain");
+        let test =
+            TestData { records: tested, from: None, init: Init::Samples(0), stretches: true };
+        let teller = Teller {
+            system: self.system,
+            problem: &prepared.problem,
+            nominal: &prepared.nominal,
+            joined: &prepared.joined,
+        };
+        let mut finding =
+            teller.tell(&prepared.start, &chosen, other.as_ref(), &test, &stretches)?;
+        finding.remarks.insert(
+            0,
+            format!(
+                "The model does not forget where it starts: errors grow a hundredfold within \
+                 {length} samples ({} s). The record was cut into stretches of that length, of which \
+                 {count} were used, each with a start fitted to it; all figures are of such \
+                 stretches. Signs of columns and the clock were not checked.",
+                super::words::number(length as f64 * step, None)
+            ),
+        );
+        finding.add(&faults);
+        Ok(finding)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_have_no_gaps_and_are_spread_over_all() {
+        let mut u: Vec<f64> = (0..100).map(f64::from).collect();
+        u[25] = f64::NAN;
+        let record = Record::new(1.0).input("u", u).unwrap();
+        let all = cut(std::slice::from_ref(&record), 10, 99);
+        let starts: Vec<f64> = all.iter().map(|r| r.inputs[0].values[0]).collect();
+        assert_eq!(starts, [0.0, 10.0, 26.0, 36.0, 46.0, 56.0, 66.0, 76.0, 86.0]);
+        assert!(all.iter().all(|r| r.len() == 10 && r.segments.len() == 1));
+        let some = cut(&[record], 10, 3);
+        assert_eq!(some.len(), 3);
+        assert_eq!(some[2].inputs[0].values[0], 66.0);
+    }
+}

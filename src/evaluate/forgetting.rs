@@ -1,0 +1,162 @@
+//! How far ahead a free run says anything: how fast two runs from nearly the same state part.
+
+use super::run::Run;
+use crate::system::{Drive, Origin};
+
+/// Relative size of the change of a start.
+const NUDGE: f64 = 1e-7;
+/// Growth from one time to twice that time which no integrator shows, but an instability does.
+const EXPONENTIAL: f64 = 20.0;
+/// Samples before which growth may be a transient.
+const TRANSIENT: usize = 8;
+/// Growth of an error in the start that a fitted stretch can bear.
+const BEARABLE: f64 = 100.0;
+/// Samples of the shortest stretch.
+const SHORTEST: usize = 20;
+/// Stretches that are asked how fast runs part in them.
+const ASKED: usize = 24;
+/// Places of a record at which it is asked whether runs part at all, and samples looked ahead.
+const PLACES: usize = 5;
+const AHEAD: usize = 2000;
+
+impl Run<'_> {
+    /// Largest change of any state, in units of its size, that a small change of the start has
+    /// made up to each sample of a stretch, in units of that change.
+    fn growth(&self, range: std::ops::Range<usize>, start: &[f64]) -> Vec<f64> {
+        let drive = Drive {
+            inputs: self.drive.inputs.iter().map(|u| u[..range.end].to_vec()).collect(),
+            segments: std::iter::once(range.clone()).collect(),
+            origins: vec![0],
+        };
+        let scales = self.state_scales(&drive, start);
+        let states = |x: &[f64]| {
+            let seen = self.system.run_seen(&self.plan, &drive, &self.lane(vec![x.to_vec()])).seen;
+            let entries = (0..x.len()).map(|i| self.plan.sources.at(Origin::State(i)));
+            let own = |e: Option<usize>| e.map(|e| seen[e][range.clone()].to_vec());
+            entries.map(own).collect::<Option<Vec<_>>>().unwrap_or_default()
+        };
+        let from = states(start);
+        let mut grown = vec![0.0_f64; range.len()];
+        for i in 0..start.len() {
+            let mut moved = start.to_vec();
+            moved[i] += NUDGE * scales[i];
+            for ((a, b), scale) in from.iter().zip(states(&moved)).zip(&scales) {
+                for ((grown, a), b) in grown.iter_mut().zip(a).zip(b) {
+                    let apart = (b - a).abs() / (NUDGE * scale);
+                    *grown = if apart.is_finite() { grown.max(apart) } else { f64::NAN };
+                }
+            }
+        }
+        // what left the finite numbers grows no more
+        let known = grown.iter().take_while(|g| g.is_finite()).count();
+        grown.truncate(known);
+        let mut most = 1.0_f64;
+        for grown in &mut grown {
+            most = most.max(*grown);
+            *grown = most;
+        }
+        grown
+    }
+
+    /// Samples of the longest stretch over which a start can be fitted, if errors of the start
+    /// grow exponentially; `None` where a free run over the whole record makes sense.
+    ///
+    /// What grows like a power of time, as an integrator's offset does, at most doubles a few
+    /// times when time doubles; an unstable or chaotic system's error multiplies.
+    pub fn horizon(&self) -> Option<usize> {
+        let segment = self.drive.segments.iter().max_by_key(|s| s.len())?.clone();
+        let shortest = SHORTEST.max(5 * self.plan.sizes.x);
+        if segment.len() < 4 * shortest {
+            return None;
+        }
+        let places = (0..PLACES).map(|i| segment.start + i * (segment.len() - shortest) / PLACES);
+        let all: Vec<Vec<f64>> = places
+            .map(|from| {
+                let own = self.start_of(from..from + shortest, segment.start, shortest);
+                self.growth(from..segment.end.min(from + AHEAD), &own)
+            })
+            .collect();
+        let parts = |grown: &&Vec<f64>| {
+            (TRANSIENT..grown.len() / 2).any(|k| grown[2 * k] > EXPONENTIAL * grown[k])
+        };
+        let parting: Vec<&Vec<f64>> = all.iter().filter(parts).collect();
+        if 2 * parting.len() <= PLACES {
+            return None;
+        }
+        let within =
+            |grown: &[f64]| grown.iter().position(|g| *g > BEARABLE).unwrap_or(grown.len());
+        let longest = segment.len() / 4;
+        let mut length = parting.iter().map(|grown| within(grown)).max()?.clamp(shortest, longest);
+        // free runs leave the data soon: ask near them, with starts fitted to all of a stretch
+        for _ in 0..2 {
+            let reach = (2 * length).min(segment.len());
+            let step = ((segment.len() - reach) / ASKED).max(1);
+            let mut asked: Vec<usize> = (segment.start..=segment.end - reach)
+                .step_by(step)
+                .map(|from| {
+                    let own = self.start_of(from..from + length, segment.start, length);
+                    within(&self.growth(from..from + reach, &own))
+                })
+                .collect();
+            asked.sort_unstable();
+            // three stretches of four bear that length
+            length = asked[asked.len() / 4].clamp(shortest, longest);
+        }
+        Some(length)
+    }
+
+    /// Name and series of every output, simulated in stretches of a length, each from a start of
+    /// its own; not a number where nothing can be simulated.
+    pub fn in_stretches(&self, length: usize) -> Vec<(String, Vec<f64>)> {
+        let mut drive = Drive { segments: vec![], origins: vec![], ..self.drive.clone() };
+        let mut starts = vec![];
+        for (segment, &origin) in self.drive.segments.iter().zip(&self.drive.origins) {
+            for from in segment.clone().step_by(length.max(1)) {
+                let stretch = from..(from + length).min(segment.end);
+                starts.push(self.start_of(stretch.clone(), origin, length));
+                drive.segments.push(stretch);
+                drive.origins.push(origin);
+            }
+        }
+        let track = self.system.run(&self.plan, &drive, &[self.lane(starts)]).swap_remove(0);
+        let names = self.plan.signals.outputs.iter().map(|s| s.name.clone());
+        names.zip(track.y).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::data::Record;
+    use crate::evaluate::Run;
+    use crate::file::Format;
+    use crate::system::System;
+
+    fn horizon(derivatives: [&str; 2], step: f64) -> Option<usize> {
+        let [p, v] = derivatives;
+        let text = format!(
+            "sampling_time = {step}\nintegrator = {{ method = \"rk4\", substeps = 2 }}\n\
+             [model.equations]\ninputs = [{{ name = \"u\" }}]\nstates = [{{ name = \"p\", derivative = \"{p}\" }}, \
+             {{ name = \"v\", derivative = \"{v}\" }}]\noutputs = [{{ name = \"y\", value = \"p\" }}]\n"
+        );
+        let system: System = crate::file::parse(&text, "test.toml", Format::Toml).unwrap();
+        let u: Vec<f64> = (0..1500).map(|k| (k as f64 * 0.07).sin()).collect();
+        let record = Record::new(step).input("u", u).unwrap();
+        // near 0, as a controller would hold it
+        let record = record.output("y", vec![0.0; 1500]).unwrap();
+        Run::new(&system, &record).unwrap().horizon()
+    }
+
+    #[test]
+    fn what_forgets_or_integrates_needs_no_stretches() {
+        assert_eq!(horizon(["v", "u - 100*p - v"], 0.02), None);
+        assert_eq!(horizon(["v", "u"], 0.02), None);
+        assert_eq!(horizon(["v", "u - 0.001*v"], 0.1), None);
+    }
+
+    #[test]
+    fn what_falls_over_is_cut() {
+        // errors grow as exp(5 t): by a hundred in 0.92 s
+        let length = horizon(["v", "u + 25*p"], 0.02).unwrap();
+        assert!((35..70).contains(&length), "{length}");
+    }
+}

@@ -1,0 +1,84 @@
+//! Plants that no free run can follow: what a fitted start and the noise leave of it grows until
+//! nothing is left of the record.
+
+use lacuna::data::Record;
+use lacuna::diagnose::{Diagnosis, Finding, Verdict};
+use lacuna::file::Format;
+use rand::{RngExt, SeedableRng};
+
+const MODEL: &str = r#"
+sampling_time = 0.02
+integrator = { method = "rk4", substeps = 4 }
+[model.equations]
+inputs  = [{ name = "torque", unit = "N m" }]
+states  = [
+  { name = "theta", unit = "rad",   derivative = "omega", initial = 0.0 },
+  { name = "omega", unit = "rad/s", derivative = "(torque + mgl*sin(theta) - c*omega) / J" },
+]
+outputs = [{ name = "angle", unit = "rad", value = "theta" }]
+parameters = [
+  { name = "J", value = 0.02, unit = "kg m^2", min = 0.0 },
+  { name = "c", value = 0.05, unit = "N m s/rad", min = 0.0 },
+  { name = "mgl", value = 0.7848, unit = "N m", min = 0.0 },
+]
+channels    = [{ name = "torque_on_arm", unit = "N m", into = [{ state = "omega", gain = "1/J" }] }]
+coordinates = [{ name = "rate", unit = "rad/s", value = "omega", quantity = "velocity" }, { name = "tilt", unit = "rad", value = "theta" }]
+"#;
+
+/// A pendulum that stands on its head, held up by a controller which follows a random course.
+fn held_up(friction: f64, seed: u64) -> Record {
+    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+    let mut gauss = || (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>();
+    let (mut x, mut aim, mut course) = ([0.0, 0.0], 0.0, 0.0);
+    let (mut u, mut y) = (vec![], vec![]);
+    for k in 0..3000 {
+        if k % 25 == 0 {
+            course = 0.35 * gauss();
+        }
+        aim += 0.15 * (course - aim);
+        y.push(x[0] + 0.002 * gauss());
+        let torque = -1.8 * (x[0] - aim) - 0.25 * x[1] + 0.02 * gauss();
+        u.push(torque);
+        let rate = |x: [f64; 2]| {
+            let dry = friction * (x[1] / 0.02).tanh();
+            [x[1], (torque + 0.7848 * x[0].sin() - 0.05 * x[1] - dry) / 0.02]
+        };
+        let h = 0.001;
+        let on = |x: [f64; 2], by: f64, k: [f64; 2]| [x[0] + by * k[0], x[1] + by * k[1]];
+        for _ in 0..20 {
+            let k1 = rate(x);
+            let k2 = rate(on(x, h / 2.0, k1));
+            let k3 = rate(on(x, h / 2.0, k2));
+            let k4 = rate(on(x, h, k3));
+            x = on(on(on(on(x, h / 6.0, k1), h / 3.0, k2), h / 3.0, k3), h / 6.0, k4);
+        }
+    }
+    Record::new(0.02).input("torque", u).unwrap().output("angle", y).unwrap()
+}
+
+fn diagnosed(record: &Record) -> Finding {
+    let system = lacuna::file::parse(MODEL, "held_up.toml", Format::Toml).unwrap();
+    let finding = Diagnosis::of(&system).run(std::slice::from_ref(record), None, &()).unwrap();
+    assert!(finding.remarks[0].contains("does not forget"), "{:?}", finding.remarks);
+    finding
+}
+
+#[test]
+fn a_right_model_of_an_unstable_plant_is_left_alone() {
+    for seed in [1, 2] {
+        let finding = diagnosed(&held_up(0.0, seed));
+        assert_eq!(finding.verdict, Verdict::NothingFound, "{finding}");
+        let rmse = finding.before.test["angle"].rmse;
+        assert!((0.0015..0.0025).contains(&rmse), "noise of 0.002 rad, {rmse}");
+    }
+}
+
+#[test]
+fn dry_friction_in_an_unstable_plant_is_named() {
+    let finding = diagnosed(&held_up(0.08, 3));
+    let first = &finding.causes[0];
+    assert_eq!((first.effect.as_str(), first.into.as_str()), ("coulomb_friction", "torque_on_arm"));
+    let level = first.parameters.iter().find(|v| v.name == "level").unwrap();
+    assert!((level.value + 0.08).abs() < 0.01, "{}", first.sentence);
+    assert!(finding.gain.error_removed > 0.95, "{finding}");
+}
