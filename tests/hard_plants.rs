@@ -82,3 +82,17 @@ fn dry_friction_in_an_unstable_plant_is_named() {
     assert!((level.value + 0.08).abs() < 0.01, "{}", first.sentence);
     assert!(finding.gain.error_removed > 0.95, "{finding}");
 }
+
+#[test]
+fn the_parameters_of_an_unstable_plant_are_estimated() {
+    let wrong =
+        MODEL.replace("value = 0.7848", "value = 0.6").replace("value = 0.05,", "value = 0.08,");
+    let system = lacuna::file::parse(&wrong, "held_up.toml", Format::Toml).unwrap();
+    let estimate = lacuna::estimate::estimate(&system, &[held_up(0.0, 4)], 0).unwrap();
+    assert!(estimate.stretch.is_some());
+    for (found, truth) in estimate.parameters.iter().zip([0.02, 0.05, 0.7848]) {
+        let error = found.std_error.unwrap();
+        assert!((found.value - truth).abs() < 4.0 * error, "{} = {}", found.name, found.value);
+        assert!((found.value - truth).abs() < 0.1 * truth, "{} = {}", found.name, found.value);
+    }
+}

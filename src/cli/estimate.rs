@@ -27,6 +27,12 @@ pub fn run(args: &Args, seed: u64, look: &Look) -> Result<u8, Failure> {
     for combination in &estimate.undetermined {
         look.result(&format!("The record cannot tell: {}", combination.text));
     }
+    if let Some(length) = estimate.stretch {
+        look.result(&format!(
+            "The model does not forget where it starts: the record was cut into stretches of {length} \
+             samples with starts of their own"
+        ));
+    }
     let (before, after) = estimate.nrmse;
     look.result(&format!("NRMSE {before:.4} before, {after:.4} after"));
     look.result(&format!("Wrote {}", args.out.display()));
@@ -37,6 +43,9 @@ pub fn run(args: &Args, seed: u64, look: &Look) -> Result<u8, Failure> {
         "nrmse": { "before": before, "after": after },
         "model": args.out,
     });
+    if let Some(length) = estimate.stretch {
+        document["stretch"] = json!(length);
+    }
     if estimate.interrupted {
         document["interrupted"] = json!(true);
     }

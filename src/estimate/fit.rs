@@ -49,7 +49,13 @@ pub struct Estimate {
     pub iterations: usize,
     /// Whether somebody stopped the fit before its end.
     pub interrupted: bool,
+    /// Samples of the stretches that records were cut into, each with a start of its own, because
+    /// the system does not forget where it starts (it is unstable or chaotic).
+    pub stretch: Option<usize>,
 }
+
+/// Stretches of records at most, where a system does not forget where it starts.
+const STRETCHES: usize = 120;
 
 /// What moves: a parameter, a knob of an effect, or an initial state.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,6 +105,8 @@ struct Fit<'a> {
     names: Vec<(String, String)>,
     source: String,
     watch: &'a dyn Watch,
+    /// Samples of a stretch, where records had to be cut.
+    stretch: Option<usize>,
 }
 
 impl<'a> Fit<'a> {
@@ -108,7 +116,13 @@ impl<'a> Fit<'a> {
         held: &[String],
         watch: &'a dyn Watch,
     ) -> Result<Self, EvaluateError> {
-        let runs = records.iter().map(|r| Run::new(system, r)).collect::<Result<Vec<_>, _>>()?;
+        let mut runs =
+            records.iter().map(|r| Run::new(system, r)).collect::<Result<Vec<_>, _>>()?;
+        let stretch = runs.iter().filter_map(Run::horizon).min();
+        if let Some(length) = stretch {
+            let most = (STRETCHES / runs.len()).max(1);
+            runs.iter_mut().for_each(|run| run.cut(length, most));
+        }
         let Some(first) = runs.first() else { return Err(EvaluateError::NothingFree) };
         let signals = &first.plan.signals;
         let known = || signals.parameters.iter().map(|p| p.name.clone());
@@ -150,7 +164,8 @@ impl<'a> Fit<'a> {
             return Err(EvaluateError::NothingFree);
         }
         for (r, run) in runs.iter().enumerate() {
-            let starts = run.starts(run.init_samples(Init::Forgotten));
+            let fitted = stretch.unwrap_or_else(|| run.init_samples(Init::Forgotten));
+            let starts = run.starts(fitted);
             for (s, start) in starts.iter().enumerate() {
                 for (i, &value) in start.iter().enumerate() {
                     let size = value.abs().max(run.plan.signals.initial()[i].abs());
@@ -171,7 +186,7 @@ impl<'a> Fit<'a> {
         };
         let spreads = (0..signals.outputs.len()).map(spread).collect();
         let source = records.first().map_or_else(String::new, |r| r.source.clone());
-        Ok(Self { keys, unknowns, spreads, system, names, runs, source, watch })
+        Ok(Self { keys, unknowns, spreads, system, names, runs, source, watch, stretch })
     }
 
     fn lane(&self, point: &[f64], r: usize) -> Lane {

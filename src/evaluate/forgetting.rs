@@ -105,20 +105,25 @@ impl Run<'_> {
         Some(length)
     }
 
+    /// Cuts the record into stretches of a length, each with a start of its own; `most` of them,
+    /// spread over it, are kept.
+    pub fn cut(&mut self, length: usize, most: usize) {
+        let whole = self.drive.segments.iter().zip(&self.drive.origins);
+        let all: Vec<(std::ops::Range<usize>, usize)> = whole
+            .flat_map(|(segment, &origin)| {
+                let starts = segment.clone().step_by(length.max(1));
+                starts.map(move |from| (from..(from + length).min(segment.end), origin))
+            })
+            .collect();
+        let every = all.len().div_ceil(most.max(1)).max(1);
+        (self.drive.segments, self.drive.origins) = all.into_iter().step_by(every).unzip();
+    }
+
     /// Name and series of every output, simulated in stretches of a length, each from a start of
     /// its own; not a number where nothing can be simulated.
-    pub fn in_stretches(&self, length: usize) -> Vec<(String, Vec<f64>)> {
-        let mut drive = Drive { segments: vec![], origins: vec![], ..self.drive.clone() };
-        let mut starts = vec![];
-        for (segment, &origin) in self.drive.segments.iter().zip(&self.drive.origins) {
-            for from in segment.clone().step_by(length.max(1)) {
-                let stretch = from..(from + length).min(segment.end);
-                starts.push(self.start_of(stretch.clone(), origin, length));
-                drive.segments.push(stretch);
-                drive.origins.push(origin);
-            }
-        }
-        let track = self.system.run(&self.plan, &drive, &[self.lane(starts)]).swap_remove(0);
+    pub fn in_stretches(mut self, length: usize) -> Vec<(String, Vec<f64>)> {
+        self.cut(length, usize::MAX);
+        let track = self.track(self.starts(length));
         let names = self.plan.signals.outputs.iter().map(|s| s.name.clone());
         names.zip(track.y).collect()
     }

@@ -70,6 +70,7 @@ impl Fit<'_> {
             nrmse: (before.sqrt(), variance.sqrt()),
             iterations: done.iterations,
             interrupted: self.watch.stopped(),
+            stretch: self.stretch,
         })
     }
 
