@@ -19,8 +19,10 @@ use crate::statistics::{corrected_score, dot};
 /// Laws that are trained, and from how many first weights each.
 const TRAINED: usize = 3;
 const SEEDS: [u64; 2] = [1, 2];
-/// Share of what is left that a law must predict where it was not fitted.
+/// Share of what is left that a law must predict where it was not fitted, and where what is left
+/// depends on no coordinate alone.
 const WORTH: f64 = 0.02;
+const WORTH_ALONE: f64 = 0.05;
 /// Share of the mean square that it may leave where a free curve explains the rest.
 const BETTER: f64 = 0.8;
 /// Share of the dependence on the inputs that may be left.
@@ -44,9 +46,10 @@ impl Search<'_, '_> {
         let Some(before) = self.present(model) else { return false };
         let depends = dependence(self.problem, self.nominal, &before);
         let asked = self.allowed.only.iter().any(|name| name == NAME);
-        // a law that has a name stays: only what nothing explains, or a curve badly, is learned
+        // a law that has a name stays: only what nothing explains, or a curve badly, is learned. What
+        // a product of two coordinates leaves need not depend on either of them
         let named = |a: &Added| !a.cause.is_known_limit() && !a.cause.is_drawn();
-        let open = depends >= DEPENDS && !model.added.iter().any(named);
+        let open = !model.added.iter().any(named);
         if self.is_noise(&before) || !asked && !open {
             return false;
         }
@@ -54,24 +57,26 @@ impl Search<'_, '_> {
         let held = self.problem.mean_square(&before, Part::Choose);
         let drawn = model.added.iter().any(|a| a.cause.is_drawn());
         let most = if drawn { BETTER * held } else { held };
+        let least = if depends < DEPENDS { WORTH_ALONE } else { WORTH };
         let worth = |learned: &Learned| {
             learned.trials[0].held < most && self.is_learned_well(&before, depends, learned)
         };
         let room = slots.len() < self.most;
-        let onto = room.then(|| self.best_law(model)).flatten().filter(worth);
+        let onto = room.then(|| self.best_law(model, least)).flatten().filter(worth);
         let stays: Vec<bool> = model.added.iter().map(|a| a.cause.is_known_limit()).collect();
         let bare = stays.contains(&false).then(|| {
             let mut bare = model.clone();
             bare.added.retain(|added| added.cause.is_known_limit());
             self.fitted(bare)
         });
-        let instead = bare.and_then(|bare| self.best_law(&bare)).filter(|alone| match &onto {
-            Some(onto) => {
-                alone.trials[0].held < most
-                    && self.score(&alone.trials[0].y, &onto.trials[0].y) < AS_GOOD
-            }
-            None => worth(alone),
-        });
+        let instead =
+            bare.and_then(|bare| self.best_law(&bare, least)).filter(|alone| match &onto {
+                Some(onto) => {
+                    alone.trials[0].held < most
+                        && self.score(&alone.trials[0].y, &onto.trials[0].y) < AS_GOOD
+                }
+                None => worth(alone),
+            });
         if instead.is_some() {
             let mut stays = stays.into_iter();
             slots.retain(|_| stays.next().unwrap_or(false));
@@ -98,13 +103,13 @@ impl Search<'_, '_> {
             && dependence(self.problem, self.nominal, y) < DEPENDS.max(LESS * depends)
     }
 
-    /// The best learned laws on top of a model.
-    fn best_law(&self, model: &Model) -> Option<Learned> {
+    /// The best learned laws on top of a model, of those that predict at least so much.
+    fn best_law(&self, model: &Model, least: f64) -> Option<Learned> {
         let y = self.present(model)?;
         let drawing =
             Drawing { problem: self.problem, nominal: self.nominal, nuisance: &self.nuisance };
         let (mut surfaces, tried) = drawing.surfaces(model, &y);
-        surfaces.retain(|surface| surface.share > WORTH);
+        surfaces.retain(|surface| surface.share > least);
         surfaces.truncate(TRAINED);
         let (mut starts, mut of): (Vec<Model>, Vec<&Surface>) = (vec![], vec![]);
         for surface in &surfaces {

@@ -18,6 +18,8 @@ use crate::statistics::{dot, rms};
 const SAMPLES: usize = 1500;
 /// Terms of a formula at most.
 const TERMS: usize = 2;
+/// Times that each is exchanged for a better one.
+const EXCHANGES: usize = 3;
 /// Share of the law that a formula must make up for.
 const ALIKE: f64 = 0.95;
 /// Share that a term must make up for per step of how intricate it is.
@@ -170,20 +172,36 @@ fn product(a: &Term, b: &Term) -> Term {
 /// and the share that they make up for.
 fn selected(w: &[f64], all: &[Term]) -> (Vec<Term>, f64) {
     let total = dot(w, w);
+    let cost = |which: &[usize]| {
+        let (_, left) = solved(w, all, which)?;
+        let price: usize = which.iter().map(|&i| all[i].intricate).sum();
+        Some(left / total + INTRICATE * price as f64)
+    };
+    // the best term in the place of one, given the others
+    let placed = |chosen: &[usize], place: usize| {
+        let with = |i: usize| {
+            let mut with = chosen.to_vec();
+            if place < with.len() {
+                with[place] = i
+            } else {
+                with.push(i)
+            }
+            with
+        };
+        let open = (0..all.len()).filter(|i| !chosen.contains(i) || chosen.get(place) == Some(i));
+        let costs = open.filter_map(|i| Some((cost(&with(i))?, i)));
+        costs.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, i)| with(i))
+    };
     let mut chosen: Vec<usize> = vec![];
     let mut best = (vec![], 0.0);
     while chosen.len() < TERMS && best.1 < ALIKE {
-        let next = (0..all.len())
-            .filter(|i| !chosen.contains(i))
-            .filter_map(|i| {
-                let with: Vec<usize> = chosen.iter().copied().chain([i]).collect();
-                let (_, left) = solved(w, all, &with)?;
-                let price: usize = with.iter().map(|&i| all[i].intricate).sum();
-                Some((left / total + INTRICATE * price as f64, i))
-            })
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((_, next)) = next else { break };
-        chosen.push(next);
+        let Some(more) = placed(&chosen, chosen.len()) else { break };
+        chosen = more;
+        // the first may have been a compromise
+        let count = chosen.len();
+        for place in (0..EXCHANGES * count).map(|i| i % count) {
+            chosen = placed(&chosen, place).unwrap_or(chosen);
+        }
         let Some((values, left)) = solved(w, all, &chosen) else { break };
         let each = chosen.iter().zip(values);
         let terms = each.map(|(&i, coefficient)| Term { coefficient, ..all[i].clone() }).collect();
