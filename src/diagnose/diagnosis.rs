@@ -148,6 +148,7 @@ impl<'a> Diagnosis<'a> {
         };
         finding.add(&mended.faults);
         finding.coarse(records);
+        finding.distorted(&mended.records);
         finding.interrupted = watch.stopped();
         watch.tell(1.0, "done");
         finding.seconds = started.elapsed().as_secs_f64();

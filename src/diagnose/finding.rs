@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::distortion::Distortion;
 use crate::evaluate::Metrics;
 use crate::system::System;
 
@@ -246,6 +247,9 @@ pub struct Finding {
     pub ranking: Vec<Ranked>,
     /// What was looked for and not found.
     pub not_found: Vec<NotFound>,
+    /// Odd and even distortion and noise per output, where periods of the input leave lines empty.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub distortion: BTreeMap<String, Distortion>,
     /// Things worth knowing, in words.
     pub remarks: Vec<String>,
     /// Whether somebody stopped the search.

@@ -9,6 +9,7 @@ mod checked;
 mod curves;
 mod dependence;
 mod diagnosis;
+mod distortion;
 mod error;
 mod faults;
 mod finding;
@@ -56,6 +57,7 @@ mod words;
 pub use crate::watch::Watch;
 pub use checked::Checked;
 pub use diagnosis::Diagnosis;
+pub use distortion::{AtLines, Distortion};
 pub use error::DiagnoseError;
 pub use finding::{
     Alternative, Cause, Curve, FalseDiscovery, Finding, Gain, Left, Moved, NoiseFloor, NotFound,

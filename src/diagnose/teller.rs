@@ -111,6 +111,7 @@ impl Teller<'_, '_> {
             left,
             ranking: self.ranking(chosen),
             not_found: self.not_found(chosen),
+            distortion: BTreeMap::new(),
             remarks,
             causes,
             interrupted: false,

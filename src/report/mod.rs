@@ -2,6 +2,7 @@
 
 mod analysis;
 mod cause;
+mod distortion;
 mod page;
 mod signals;
 pub(crate) mod svg;
@@ -72,6 +73,7 @@ impl<'a> Report<'a> {
         }
         cause::unexplained(&mut page, finding);
         signals::sections(&mut page, &finding.series, finding);
+        distortion::section(&mut page, finding);
         tables::sections(&mut page, finding);
         page.raw(FOOTER);
         page.html(&format!("{} - lacuna", self.title))

@@ -1,0 +1,300 @@
+//! What periodic inputs that leave lines empty show without any model: odd and even
+//! distortion, and noise, at the same lines.
+
+use serde::Serialize;
+
+use super::finding::Finding;
+use super::number;
+use crate::data::Record;
+use crate::statistics::{Complex, deviation, lines, mean, ratio_tail};
+
+/// Chance at which noise alone passes for a distortion.
+const LEVEL: f64 = 1e-3;
+/// An input line below this share of its strongest is empty.
+const EMPTY: f64 = 1e-3;
+/// Empty lines within the excited band that suffice; with fewer, those above it count too,
+const ENOUGH: usize = 8;
+/// up to this multiple of the highest excited line.
+const BEYOND: usize = 9;
+/// Share of the samples that may be missing.
+const MISSING: f64 = 0.05;
+
+/// What stands at one kind of lines of an output.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AtLines {
+    /// Root mean square at these lines of the average over the periods, its noise included,
+    /// in the output's unit.
+    pub rms: f64,
+    /// What noise alone would make of that, from the differences between the periods.
+    pub noise_rms: f64,
+    /// Number of lines.
+    pub lines: usize,
+    /// Whether the power at these lines is above the noise's by more than chance.
+    pub present: bool,
+}
+
+/// Distortion of one output under an input that excites odd lines only.
+///
+/// A law that is odd about the operating point, f(-x) = -f(x), answers odd lines with odd
+/// lines, an even one with even lines, so that what stands at lines that the input leaves
+/// empty tells which is there; what differs from period to period is noise. With the
+/// Fourier lines Y_p(k) of P periods, their mean Y(k) and s2(k), the variance of that mean
+/// from the scatter of the periods, a distortion is there where
+/// `sum |Y(k)|^2 / sum s2(k)` passes the 0.1 % point of F(2 L, 2 L (P - 1)), L being the
+/// number of lines that noise as coloured as this is worth (Satterthwaite, Biometrics 2,
+/// 1946). What an input that is nearly empty at a line can cause there by the largest gain
+/// at excited lines is added to s2 (Pintelon, Schoukens, System Identification: A Frequency
+/// Domain Approach, 2nd ed. 2012, Ch. 4).
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Distortion {
+    /// Root mean square at the excited lines, in the output's unit.
+    pub excited_rms: f64,
+    /// Noise at the excited lines, in the average over the periods.
+    pub excited_noise_rms: f64,
+    /// At empty odd lines; `None` where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub odd: Option<AtLines>,
+    /// At empty even lines.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub even: Option<AtLines>,
+    /// Whole periods that were averaged.
+    pub periods: usize,
+}
+
+impl Finding {
+    /// Says what the first record of enough periods tells of distortion.
+    pub(super) fn distorted(&mut self, records: &[Record]) {
+        let Some((record, lit)) = records.iter().find_map(|r| Some((r, Lit::of(r)?))) else {
+            return;
+        };
+        for output in &record.outputs {
+            let Some(distortion) = lit.distortion(&output.values) else { continue };
+            let unit = match output.unit.as_str() {
+                "" => String::new(),
+                unit => format!(" {unit}"),
+            };
+            self.remarks.extend(in_words(&distortion, &output.name, &unit, lit.centred));
+            self.distortion.insert(output.name.clone(), distortion);
+        }
+    }
+}
+
+/// The sentence of a distortion that is there.
+fn in_words(distortion: &Distortion, name: &str, unit: &str, centred: bool) -> Option<String> {
+    let there = |kind: &Option<AtLines>| kind.clone().filter(|at| at.present);
+    let size = |at: &AtLines| {
+        format!("{}{unit} against noise of {}{unit}", short(at.rms), short(at.noise_rms))
+    };
+    let about = if centred { "zero" } else { "the operating point" };
+    let odd_law = format!("a law symmetric about {about}, such as dry friction or a cubic spring");
+    match (there(&distortion.odd), there(&distortion.even)) {
+        (Some(odd), None) => {
+            let even = if distortion.even.is_some() { "; no even distortion" } else { "" };
+            Some(format!("Odd distortion of {name}, {}{even}: {odd_law}.", size(&odd)))
+        }
+        (None, Some(even)) => {
+            let odd = if distortion.odd.is_some() { "; no odd distortion" } else { "" };
+            Some(format!(
+                "Even distortion of {name}, {}{odd}: something one-sided or quadratic.",
+                size(&even)
+            ))
+        }
+        (Some(odd), Some(even)) => Some(format!(
+            "Odd distortion of {name}, {}, and even distortion, {}: something one-sided or quadratic; \
+             the odd part is what comes of it within the machine, or {odd_law}.",
+            size(&odd),
+            size(&even)
+        )),
+        (None, None) => None,
+    }
+}
+
+/// Two digits are enough for a level.
+fn short(value: f64) -> String {
+    let size = if value > 0.0 { 10f64.powf(value.log10().floor()) } else { 1.0 };
+    number((value / size * 10.0).round() / 10.0 * size, Some(1.5 * size))
+}
+
+/// Which lines of a record's period its inputs excite.
+struct Lit {
+    samples: usize,
+    count: usize,
+    /// Excited lines, all odd.
+    excited: Vec<usize>,
+    highest: usize,
+    /// What the inputs have at every line, as a share of their strongest.
+    share: Vec<f64>,
+    /// Whether the inputs have no mean to speak of.
+    centred: bool,
+}
+
+impl Lit {
+    /// `None` where inputs do not repeat, or do not excite odd lines only.
+    fn of(record: &Record) -> Option<Self> {
+        let periods = record.periods()?;
+        let mut share = vec![0.0_f64; periods.samples / 2 + 1];
+        let mut centred = true;
+        for input in &record.inputs {
+            let u = &input.values[..periods.samples];
+            let spread = deviation(u);
+            if !(spread > 1e-12 * mean(u).abs()) {
+                centred &= mean(u) == 0.0;
+                continue;
+            }
+            centred &= mean(u).abs() < 0.01 * spread;
+            let all: Vec<f64> = lines(u).iter().map(|line| line.norm()).collect();
+            let strongest = all.iter().skip(1).copied().fold(0.0, f64::max);
+            for (share, line) in share.iter_mut().zip(&all) {
+                *share = share.max(line / strongest);
+            }
+        }
+        let excited: Vec<usize> = (1..share.len()).filter(|&k| share[k] > EMPTY).collect();
+        let odd_only = excited.iter().all(|k| k % 2 == 1);
+        let highest = *excited.last().filter(|_| odd_only)?;
+        Some(Self {
+            samples: periods.samples,
+            count: periods.count,
+            excited,
+            highest,
+            share,
+            centred,
+        })
+    }
+
+    /// Empty lines of one parity: within the excited band, or above it where there are too few.
+    fn empty(&self, parity: usize) -> Vec<usize> {
+        let top = (self.samples - 1) / 2;
+        let up_to = |end: usize| -> Vec<usize> {
+            let here = (1..=end.min(top)).filter(|k| k % 2 == parity);
+            here.filter(|&k| self.share[k] <= EMPTY).collect()
+        };
+        let within = up_to(self.highest);
+        if within.len() >= ENOUGH { within } else { up_to(BEYOND * self.highest) }
+    }
+
+    fn distortion(&self, y: &[f64]) -> Option<Distortion> {
+        let mut periods = whole(y, self.samples, self.count)?;
+        // a start that has not settled: the first period is unlike the others
+        while periods.len() > 2 && starts_otherwise(&periods) {
+            periods.remove(0);
+        }
+        let spectrum = Spectrum::of(&periods);
+        let top = |k: &usize| 2 * k < self.samples;
+        let excited: Vec<usize> = self.excited.iter().copied().filter(top).collect();
+        let gain = excited.iter().map(|&k| spectrum.power[k].sqrt() / self.share[k]);
+        let gain = gain.fold(0.0, f64::max);
+        let (power, noise) = spectrum.sums(&excited);
+        let kind = |parity: usize| {
+            let lines = self.empty(parity);
+            (!lines.is_empty()).then(|| {
+                let leak: f64 = lines.iter().map(|&k| (gain * self.share[k]).powi(2)).sum();
+                spectrum.at(&lines, leak)
+            })
+        };
+        let (odd, even) = (kind(1), kind(0));
+        (odd.is_some() || even.is_some()).then(|| Distortion {
+            excited_rms: power.sqrt(),
+            excited_noise_rms: noise.sqrt(),
+            odd,
+            even,
+            periods: spectrum.periods,
+        })
+    }
+}
+
+/// The last `count` whole periods, a missing sample filled by the mean of its fellows; `None`
+/// where too much is missing or less than two periods are left.
+fn whole(y: &[f64], samples: usize, count: usize) -> Option<Vec<Vec<f64>>> {
+    let end = y.len();
+    let all = (0..count).rev().map(|p| &y[end - (p + 1) * samples..end - p * samples]);
+    let missing = |period: &[f64]| period.iter().filter(|v| !v.is_finite()).count() as f64;
+    let kept: Vec<&[f64]> = all.filter(|p| missing(p) <= MISSING * samples as f64).collect();
+    if kept.len() < 2 {
+        return None;
+    }
+    let mut fellows = vec![];
+    for k in 0..samples {
+        let known: Vec<f64> = kept.iter().map(|p| p[k]).filter(|v| v.is_finite()).collect();
+        if known.is_empty() {
+            return None;
+        }
+        fellows.push(mean(&known));
+    }
+    let fill = |p: &[f64]| -> Vec<f64> {
+        p.iter().zip(&fellows).map(|(v, m)| if v.is_finite() { *v } else { *m }).collect()
+    };
+    Some(kept.into_iter().map(fill).collect())
+}
+
+/// Whether the first of several periods differs from the mean of the others by more than
+/// these differ among themselves.
+fn starts_otherwise(periods: &[Vec<f64>]) -> bool {
+    let spectrum = Spectrum::of(&periods[1..]);
+    let first = lines(&periods[0]);
+    let others = spectrum.periods as f64;
+    let per_line = 2.0 / (periods[0].len() as f64).powi(2);
+    let all: Vec<usize> = (1..spectrum.power.len()).collect();
+    let off: f64 = all.iter().map(|&k| (first[k] - spectrum.mean[k]).norm_sqr() * per_line).sum();
+    let (noise, worth) = (spectrum.sums(&all).1, spectrum.worth(&all));
+    // the difference has the variance of one period and of the mean of the others
+    let ratio = off / (noise * (others + 1.0));
+    ratio_tail(ratio, 2.0 * worth, 2.0 * worth * (others - 1.0)) < LEVEL
+}
+
+/// Lines of several periods: their mean and the noise of that mean, as mean squares.
+struct Spectrum {
+    periods: usize,
+    mean: Vec<Complex<f64>>,
+    power: Vec<f64>,
+    noise: Vec<f64>,
+}
+
+impl Spectrum {
+    fn of(periods: &[Vec<f64>]) -> Self {
+        let all: Vec<_> = periods.iter().map(|p| lines(p)).collect();
+        let count = all.len() as f64;
+        let per_line = 2.0 / (periods[0].len() as f64).powi(2);
+        let mean: Vec<_> = (0..all[0].len())
+            .map(|k| all.iter().map(|p| p[k]).sum::<Complex<f64>>() / count)
+            .collect();
+        let scatter = |k: usize| -> f64 {
+            all.iter().map(|p| (p[k] - mean[k]).norm_sqr()).sum::<f64>() / (count * (count - 1.0))
+        };
+        let noise = (0..mean.len()).map(|k| per_line * scatter(k)).collect();
+        let power = mean.iter().map(|line| per_line * line.norm_sqr()).collect();
+        Self { periods: all.len(), mean, power, noise }
+    }
+
+    fn sums(&self, at: &[usize]) -> (f64, f64) {
+        (at.iter().map(|&k| self.power[k]).sum(), at.iter().map(|&k| self.noise[k]).sum())
+    }
+
+    /// How many lines of equal noise these are worth. The squares of estimates with 2 (P - 1)
+    /// degrees of freedom are P / (P - 1) times too large on average.
+    fn worth(&self, at: &[usize]) -> f64 {
+        let (_, sum) = self.sums(at);
+        let squares: f64 = at.iter().map(|&k| self.noise[k].powi(2)).sum();
+        let count = self.periods as f64;
+        let worth = sum * sum / (squares * (count - 1.0) / count);
+        if worth.is_finite() { worth.clamp(1.0, at.len() as f64) } else { at.len() as f64 }
+    }
+
+    fn at(&self, lines: &[usize], leak: f64) -> AtLines {
+        let (power, noise) = self.sums(lines);
+        let worth = self.worth(lines);
+        let below = 2.0 * worth * (self.periods as f64 - 1.0);
+        // rounding of the record and of the transform is no distortion
+        let strongest = self.power[1..].iter().copied().fold(0.0, f64::max);
+        let floor = noise + leak + 1e-18 * strongest * lines.len() as f64;
+        AtLines {
+            rms: power.sqrt(),
+            noise_rms: noise.sqrt(),
+            lines: lines.len(),
+            present: ratio_tail(power / floor, 2.0 * worth, below) < LEVEL,
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "distortion_tests.rs"]
+mod tests;
