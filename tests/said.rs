@@ -9,7 +9,10 @@ use lacuna::report::Report;
 use lacuna::system::System;
 
 mod said {
+    mod closed_loop;
     mod distortion;
+    mod records;
+    mod regime;
 }
 
 /// A mass on a spring, as it is modelled.

@@ -8,7 +8,7 @@ use super::finished::Finished;
 use super::floor::Floor;
 use super::nuisance::{Key, Refit, refit};
 use super::precision::standard_error;
-use super::problem::Grain;
+use super::problem::{Grain, Model};
 use super::score::{Scored, TestData, removed};
 use super::teller::Teller;
 use super::words::sentence;
@@ -102,6 +102,8 @@ impl Teller<'_, '_> {
                 runners_up: runners_up
                     .map(|(c, gain)| alternative(c, gain.clamp(0.0, 1.0) * share))
                     .collect(),
+                acts_where: None,
+                records: None,
                 rows: None,
             });
         }
@@ -137,6 +139,8 @@ impl Teller<'_, '_> {
             error_removed: share,
             indistinguishable: vec![alternative(limit, share)],
             runners_up: vec![],
+            acts_where: None,
+            records: None,
             rows: Some(rows),
         }
     }
@@ -190,25 +194,16 @@ impl Teller<'_, '_> {
     ) -> Result<Vec<Cause>, DiagnoseError> {
         let mut causes = vec![];
         for moved in &chosen.moved {
-            let Some(p) =
-                self.problem.base.signals.parameters.iter().position(|q| q.name == moved.name)
-            else {
-                continue;
-            };
-            let mut back = chosen.fitted.model.clone();
-            back.theta[p] = moved.from;
-            let mut nuisance = chosen.nuisance.clone();
-            nuisance.free.retain(|&(q, _)| q != p);
-            let models = std::slice::from_ref(&back);
-            let fitted = refit(self.problem, &nuisance, models, Refit::last()).swap_remove(0);
-            let (share, by_test) = match fitted {
-                Some(fitted) => {
-                    let scored = test.score(&self.extend(&fitted.model)?)?;
+            let parameters = &self.problem.base.signals.parameters;
+            let Some(p) = parameters.iter().position(|q| q.name == moved.name) else { continue };
+            let (share, by_test) = match self.back(chosen, p, moved.from) {
+                Some(back) => {
+                    let scored = test.score(&self.extend(&back)?)?;
                     (removed(before, &scored, after, floors), on_test(&scored, after))
                 }
                 None => (0.0, 1.0),
             };
-            let unit = self.problem.base.signals.parameters[p].unit.clone();
+            let unit = parameters[p].unit.clone();
             let value =
                 Value { name: "value".into(), value: moved.to, std_error: moved.std_error, unit };
             let far = moved.std_error.map_or(0.0, |e| (moved.to - moved.from).abs() / e);
@@ -230,10 +225,23 @@ impl Teller<'_, '_> {
                 error_removed: share,
                 indistinguishable: vec![],
                 runners_up: vec![],
+                acts_where: None,
+                records: None,
                 rows: None,
             });
         }
         Ok(causes)
+    }
+
+    /// The chosen model with one parameter where it began, refitted.
+    pub fn back(&self, chosen: &Finished, p: usize, from: f64) -> Option<Model> {
+        let mut back = chosen.fitted.model.clone();
+        back.theta[p] = from;
+        let mut nuisance = chosen.nuisance.clone();
+        nuisance.free.retain(|&(q, _)| q != p);
+        let models = std::slice::from_ref(&back);
+        let fitted = refit(self.problem, &nuisance, models, Refit::last()).swap_remove(0);
+        fitted.map(|fitted| fitted.model)
     }
 
     /// Spikes, where there are too many to be chance.
@@ -266,6 +274,8 @@ impl Teller<'_, '_> {
                 error_removed: 0.0,
                 indistinguishable: vec![],
                 runners_up: vec![],
+                acts_where: None,
+                records: None,
                 rows: Some(rows.iter().map(|k| k + 1).collect()),
             });
         }

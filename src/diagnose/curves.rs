@@ -52,7 +52,7 @@ pub(crate) fn curves(
 }
 
 /// The source entry of a cause that is a curve of one coordinate.
-fn source_of(problem: &Problem<'_>, cause: &Candidate) -> Option<usize> {
+pub(super) fn source_of(problem: &Problem<'_>, cause: &Candidate) -> Option<usize> {
     let is_curve = cause.card.mechanism == Mechanism::Law
         && cause.card.states == 0
         && cause.also_of.is_empty();

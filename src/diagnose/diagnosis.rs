@@ -135,6 +135,7 @@ impl<'a> Diagnosis<'a> {
         if let Some(length) = horizon(self.system, records)? {
             let mut finding = self.by_stretches(records, test, length, watch)?;
             finding.coarse(records);
+            finding.distorted(records);
             finding.interrupted = watch.stopped();
             watch.tell(1.0, "done");
             finding.seconds = started.elapsed().as_secs_f64();
@@ -146,6 +147,7 @@ impl<'a> Diagnosis<'a> {
             None => self.search(&mended.records, mended.test.as_ref(), self.max_causes, watch)?,
             Some(fault) => self.clocked(mended.clone(), fault, watch)?,
         };
+        self.alone(&mut finding, &mended.records, watch)?;
         finding.add(&mended.faults);
         finding.coarse(records);
         finding.distorted(&mended.records);
@@ -213,7 +215,7 @@ impl<'a> Diagnosis<'a> {
     }
 
     /// The search for what the model itself gets wrong, on records without faults but spikes.
-    fn search(
+    pub(super) fn search(
         &self,
         records: &[Record],
         test: Option<&Record>,

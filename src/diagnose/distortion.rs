@@ -6,7 +6,7 @@ use serde::Serialize;
 use super::finding::Finding;
 use super::number;
 use crate::data::Record;
-use crate::statistics::{Complex, deviation, lines, mean, ratio_tail};
+use crate::statistics::{Averaged, deviation, lines, mean};
 
 /// Chance at which noise alone passes for a distortion.
 const LEVEL: f64 = 1e-3;
@@ -38,11 +38,10 @@ pub struct AtLines {
 /// A law that is odd about the operating point, f(-x) = -f(x), answers odd lines with odd
 /// lines, an even one with even lines, so that what stands at lines that the input leaves
 /// empty tells which is there; what differs from period to period is noise. With the
-/// Fourier lines Y_p(k) of P periods, their mean Y(k) and s2(k), the variance of that mean
-/// from the scatter of the periods, a distortion is there where
-/// `sum |Y(k)|^2 / sum s2(k)` passes the 0.1 % point of F(2 L, 2 L (P - 1)), L being the
-/// number of lines that noise as coloured as this is worth (Satterthwaite, Biometrics 2,
-/// 1946). What an input that is nearly empty at a line can cause there by the largest gain
+/// Fourier lines Y_p(k) of P periods (whitened by an autoregression of the differences
+/// between periods), their mean Y(k) and s2(k), the variance of that mean from the scatter of
+/// the periods, a distortion is there where `sum |Y(k)|^2 / sum s2(k)` passes the 0.1 % point
+/// of F(2 L, 2 L (P - 1)), L being the number of lines. What an input that is nearly empty at a line can cause there by the largest gain
 /// at excited lines is added to s2 (Pintelon, Schoukens, System Identification: A Frequency
 /// Domain Approach, 2nd ed. 2012, Ch. 4).
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -175,20 +174,27 @@ impl Lit {
     fn distortion(&self, y: &[f64]) -> Option<Distortion> {
         let mut periods = whole(y, self.samples, self.count)?;
         // a start that has not settled: the first period is unlike the others
-        while periods.len() > 2 && starts_otherwise(&periods) {
+        let band: Vec<usize> = (1..=self.highest).filter(|k| 2 * k < self.samples).collect();
+        let settled = |periods: &[Vec<f64>]| {
+            periods.len() < 3 || Averaged::of(&periods[1..]).unlike(&periods[0], &band) >= LEVEL
+        };
+        while !settled(&periods) {
             periods.remove(0);
         }
-        let spectrum = Spectrum::of(&periods);
-        let top = |k: &usize| 2 * k < self.samples;
-        let excited: Vec<usize> = self.excited.iter().copied().filter(top).collect();
-        let gain = excited.iter().map(|&k| spectrum.power[k].sqrt() / self.share[k]);
+        let average = Averaged::of(&periods);
+        let excited: Vec<usize> =
+            self.excited.iter().copied().filter(|k| 2 * k < self.samples).collect();
+        let gain = excited.iter().map(|&k| average.power[k] / self.share[k].powi(2));
         let gain = gain.fold(0.0, f64::max);
-        let (power, noise) = spectrum.sums(&excited);
+        let (power, noise) = average.sums(&excited);
         let kind = |parity: usize| {
             let lines = self.empty(parity);
-            (!lines.is_empty()).then(|| {
-                let leak: f64 = lines.iter().map(|&k| (gain * self.share[k]).powi(2)).sum();
-                spectrum.at(&lines, leak)
+            let (power, noise) = average.sums(&lines);
+            (!lines.is_empty()).then(|| AtLines {
+                rms: power.sqrt(),
+                noise_rms: noise.sqrt(),
+                lines: lines.len(),
+                present: average.tail(&lines, |k| gain * self.share[k].powi(2)) < LEVEL,
             })
         };
         let (odd, even) = (kind(1), kind(0));
@@ -197,7 +203,7 @@ impl Lit {
             excited_noise_rms: noise.sqrt(),
             odd,
             even,
-            periods: spectrum.periods,
+            periods: average.periods,
         })
     }
 }
@@ -224,75 +230,6 @@ fn whole(y: &[f64], samples: usize, count: usize) -> Option<Vec<Vec<f64>>> {
         p.iter().zip(&fellows).map(|(v, m)| if v.is_finite() { *v } else { *m }).collect()
     };
     Some(kept.into_iter().map(fill).collect())
-}
-
-/// Whether the first of several periods differs from the mean of the others by more than
-/// these differ among themselves.
-fn starts_otherwise(periods: &[Vec<f64>]) -> bool {
-    let spectrum = Spectrum::of(&periods[1..]);
-    let first = lines(&periods[0]);
-    let others = spectrum.periods as f64;
-    let per_line = 2.0 / (periods[0].len() as f64).powi(2);
-    let all: Vec<usize> = (1..spectrum.power.len()).collect();
-    let off: f64 = all.iter().map(|&k| (first[k] - spectrum.mean[k]).norm_sqr() * per_line).sum();
-    let (noise, worth) = (spectrum.sums(&all).1, spectrum.worth(&all));
-    // the difference has the variance of one period and of the mean of the others
-    let ratio = off / (noise * (others + 1.0));
-    ratio_tail(ratio, 2.0 * worth, 2.0 * worth * (others - 1.0)) < LEVEL
-}
-
-/// Lines of several periods: their mean and the noise of that mean, as mean squares.
-struct Spectrum {
-    periods: usize,
-    mean: Vec<Complex<f64>>,
-    power: Vec<f64>,
-    noise: Vec<f64>,
-}
-
-impl Spectrum {
-    fn of(periods: &[Vec<f64>]) -> Self {
-        let all: Vec<_> = periods.iter().map(|p| lines(p)).collect();
-        let count = all.len() as f64;
-        let per_line = 2.0 / (periods[0].len() as f64).powi(2);
-        let mean: Vec<_> = (0..all[0].len())
-            .map(|k| all.iter().map(|p| p[k]).sum::<Complex<f64>>() / count)
-            .collect();
-        let scatter = |k: usize| -> f64 {
-            all.iter().map(|p| (p[k] - mean[k]).norm_sqr()).sum::<f64>() / (count * (count - 1.0))
-        };
-        let noise = (0..mean.len()).map(|k| per_line * scatter(k)).collect();
-        let power = mean.iter().map(|line| per_line * line.norm_sqr()).collect();
-        Self { periods: all.len(), mean, power, noise }
-    }
-
-    fn sums(&self, at: &[usize]) -> (f64, f64) {
-        (at.iter().map(|&k| self.power[k]).sum(), at.iter().map(|&k| self.noise[k]).sum())
-    }
-
-    /// How many lines of equal noise these are worth. The squares of estimates with 2 (P - 1)
-    /// degrees of freedom are P / (P - 1) times too large on average.
-    fn worth(&self, at: &[usize]) -> f64 {
-        let (_, sum) = self.sums(at);
-        let squares: f64 = at.iter().map(|&k| self.noise[k].powi(2)).sum();
-        let count = self.periods as f64;
-        let worth = sum * sum / (squares * (count - 1.0) / count);
-        if worth.is_finite() { worth.clamp(1.0, at.len() as f64) } else { at.len() as f64 }
-    }
-
-    fn at(&self, lines: &[usize], leak: f64) -> AtLines {
-        let (power, noise) = self.sums(lines);
-        let worth = self.worth(lines);
-        let below = 2.0 * worth * (self.periods as f64 - 1.0);
-        // rounding of the record and of the transform is no distortion
-        let strongest = self.power[1..].iter().copied().fold(0.0, f64::max);
-        let floor = noise + leak + 1e-18 * strongest * lines.len() as f64;
-        AtLines {
-            rms: power.sqrt(),
-            noise_rms: noise.sqrt(),
-            lines: lines.len(),
-            present: ratio_tail(power / floor, 2.0 * worth, below) < LEVEL,
-        }
-    }
 }
 
 #[cfg(test)]

@@ -51,7 +51,7 @@ fn odd_and_even_laws_show_where_they_should() {
         };
         assert_eq!(seen(|x| x - 0.1 * x * x * x), (true, false));
         assert_eq!(seen(|x| x - 0.1 * x * x), (false, true));
-        assert_eq!(seen(|x| x - 0.2 * x.max(0.5)), (true, true));
+        assert_eq!(seen(|x| x - 0.5 * x.max(0.5)), (true, true));
         assert_eq!(seen(|x| x), (false, false));
     }
 }
@@ -60,11 +60,11 @@ fn odd_and_even_laws_show_where_they_should() {
 fn sizes_are_those_of_the_distortion_and_of_the_noise() {
     let u = multisine(odd_random(), 3);
     let (bent, plain) = (answer(&u, |x| x - 0.3 * x * x), answer(&u, |x| x));
-    let found = found(&u, &bent, &white(0.02, 4), 4).unwrap();
+    let found = found(&u, &bent, &white(0.02, 4), 3).unwrap();
     let even = found.even.unwrap();
-    // 100 of 500 lines, four periods averaged
+    // 99 of 500 lines, three periods averaged
     assert_eq!(even.lines, 99);
-    let expected = 0.02 * (99.0_f64 / 500.0 / 4.0).sqrt();
+    let expected = 0.02 * (99.0_f64 / 500.0 / 3.0).sqrt();
     assert!((even.noise_rms / expected - 1.0).abs() < 0.15, "{} {expected}", even.noise_rms);
     // all that an even law adds but its mean is even
     let last = 3 * PERIOD;
@@ -77,19 +77,19 @@ fn sizes_are_those_of_the_distortion_and_of_the_noise() {
 #[test]
 fn noise_is_no_distortion_whatever_its_colour() {
     let (mut alarms, mut tests) = (0, 0);
-    for pole in [0.0, 0.9, 0.99] {
-        for periods in [2, 4] {
-            for seed in 1..=100 {
-                let u = multisine(odd_random(), seed);
-                let e = match pole {
-                    0.0 => white(0.3, 1000 + seed),
-                    pole => noise::ar1(4 * PERIOD, pole, 0.3, 1000 + seed).unwrap(),
-                };
-                let found = found(&u, &answer(&u, |x| x), &e, periods).unwrap();
-                alarms += usize::from(there(&found.odd)) + usize::from(there(&found.even));
-                tests += 2;
-            }
+    for (pole, periods) in [(0.0, 2), (0.0, 4), (0.9, 2), (0.9, 4), (0.99, 2), (0.99, 4)] {
+        let before = alarms;
+        for seed in 1..=100 {
+            let u = multisine(odd_random(), seed);
+            let e = match pole {
+                0.0 => white(0.3, 1000 + seed),
+                pole => noise::ar1(4 * PERIOD, pole, 0.3, 1000 + seed).unwrap(),
+            };
+            let found = found(&u, &answer(&u, |x| x), &e, periods).unwrap();
+            alarms += usize::from(there(&found.odd)) + usize::from(there(&found.even));
+            tests += 2;
         }
+        println!("pole {pole}, {periods} periods: {} of 200", alarms - before);
     }
     println!("{alarms} alarms in {tests} tests");
     assert!(alarms <= 6, "{alarms} of {tests} at a level of 0.1 %");

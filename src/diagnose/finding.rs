@@ -4,7 +4,12 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use super::acts::ActsWhere;
+use super::alone::Alone;
 use super::distortion::Distortion;
+use super::feedback::ClosedLoop;
+use super::regime::Regime;
+use super::shown::InRecord;
 use crate::evaluate::Metrics;
 use crate::system::System;
 
@@ -92,6 +97,12 @@ pub struct Cause {
     pub indistinguishable: Vec<Alternative>,
     /// The next best ones.
     pub runners_up: Vec<Alternative>,
+    /// Part of its coordinate's range in which it acts, where it is silent in the rest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub acts_where: Option<ActsWhere>,
+    /// What each record says of it, where there are several.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub records: Option<Vec<InRecord>>,
     /// Rows of the record concerned, 1 being the first sample; only for faults of the data.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rows: Option<Vec<usize>>,
@@ -250,6 +261,15 @@ pub struct Finding {
     /// Odd and even distortion and noise per output, where periods of the input leave lines empty.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub distortion: BTreeMap<String, Distortion>,
+    /// Frequencies that the model's error keeps to, per output, where it keeps to a part of them.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub regime: BTreeMap<String, Regime>,
+    /// What single ones of several records show, where all together name no cause.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub alone: Vec<Alone>,
+    /// The input that reacts to the outputs, if one does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closed_loop: Option<ClosedLoop>,
     /// Things worth knowing, in words.
     pub remarks: Vec<String>,
     /// Whether somebody stopped the search.

@@ -74,6 +74,11 @@ impl Moved {
 }
 
 impl Finished {
+    /// How many causes it added; those of a finding begin with them.
+    pub fn causes(&self) -> usize {
+        self.fitted.model.added.len()
+    }
+
     /// Whether no cause was found but what was known before: limits of the instruments.
     pub(super) fn found_nothing(&self) -> bool {
         self.fitted.model.added.len() == self.fitted.model.known()

@@ -31,6 +31,24 @@ impl Problem<'_> {
         a.iter().chain(b).cloned().flatten()
     }
 
+    /// The samples that count in a part, as stretches without a break, in order.
+    pub fn stretches(&self, part: Part) -> Vec<Range<usize>> {
+        let mut samples: Vec<usize> = self.samples(part).collect();
+        samples.sort_unstable();
+        let mut all: Vec<Range<usize>> = vec![];
+        for k in samples {
+            match all.last_mut() {
+                Some(last)
+                    if last.end == k && !self.drive.segments.iter().any(|s| s.start == k) =>
+                {
+                    last.end += 1;
+                }
+                _ => all.push(k..k + 1),
+            }
+        }
+        all
+    }
+
     /// Weighted residuals y - yhat over a part, outputs one after the other.
     pub fn residual(&self, yhat: &[Vec<f64>], part: Part) -> Vec<f64> {
         let mut r = vec![];

@@ -1,6 +1,8 @@
 //! Finds what a simulation gets wrong, names it and measures the gain.
 
 mod accept;
+mod acts;
+mod alone;
 mod believe;
 mod candidate;
 mod causes;
@@ -12,6 +14,7 @@ mod diagnosis;
 mod distortion;
 mod error;
 mod faults;
+mod feedback;
 mod finding;
 mod finished;
 mod floor;
@@ -32,6 +35,7 @@ mod problem;
 mod prune;
 mod readback;
 mod records;
+mod regime;
 mod remarks;
 mod resembles;
 mod ridge;
@@ -41,6 +45,7 @@ mod screen;
 mod search;
 mod sets;
 mod shapeless;
+mod shown;
 mod sketch;
 mod smooth;
 mod spikes;
@@ -55,13 +60,18 @@ mod train;
 mod words;
 
 pub use crate::watch::Watch;
+pub use acts::ActsWhere;
+pub use alone::Alone;
 pub use checked::Checked;
 pub use diagnosis::Diagnosis;
 pub use distortion::{AtLines, Distortion};
 pub use error::DiagnoseError;
+pub use feedback::ClosedLoop;
 pub use finding::{
     Alternative, Cause, Curve, FalseDiscovery, Finding, Gain, Left, Moved, NoiseFloor, NotFound,
     OtherTrack, Ranked, Scores, Series, Track, Value, Verdict,
 };
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
+pub use regime::Regime;
+pub use shown::InRecord;
 pub(crate) use words::number;

@@ -151,6 +151,17 @@ impl Nominal {
         values.iter().all(|v| v * typical >= 0.0).then_some(typical)
     }
 
+    /// Whether an input reaches an output without a state in between.
+    pub fn is_direct(&self, problem: &Problem<'_>, input: usize) -> bool {
+        let law = problem.system.model.as_ref();
+        let along = crate::model::probe::unit(self.sizes.u, input);
+        let mut slopes = self
+            .points
+            .iter()
+            .flat_map(|point| slope(law, self.sizes, Ask::Output, point, Along::Input(&along)));
+        slopes.any(|slope| slope != 0.0)
+    }
+
     /// What a search for effects of one source needs to know.
     pub fn view(&self, source: usize, is_time: bool, own_path: bool, lines: &[f64]) -> View {
         let mut view = View::new(&self.seen[source][..self.count], self.sampling_time);

@@ -13,9 +13,21 @@ pub(crate) struct Joined {
     pub drive: Drive,
     /// Measured outputs, not a number where there is none.
     pub measured: Vec<Vec<f64>>,
+    /// What each record is called: its file, or its number.
+    pub names: Vec<String>,
     /// Samples of each record.
     pub spans: Vec<Range<usize>>,
     pub sampling_time: f64,
+}
+
+impl Record {
+    /// What one of several records is called: its file, or its number.
+    pub(super) fn name(&self, index: usize) -> String {
+        match self.source.as_str() {
+            "" => format!("record {}", index + 1),
+            source => source.into(),
+        }
+    }
 }
 
 /// Joins records of one machine.
@@ -28,6 +40,7 @@ pub(crate) fn join(signals: &Signals, records: &[Record]) -> Result<Joined, Diag
             origins: vec![],
         },
         measured: vec![vec![]; signals.outputs.len()],
+        names: vec![],
         spans: vec![],
         sampling_time: first.sampling_time,
     };
@@ -62,6 +75,7 @@ pub(crate) fn join(signals: &Signals, records: &[Record]) -> Result<Joined, Diag
             joined.drive.segments.push(segment.start + offset..segment.end + offset);
             joined.drive.origins.push(offset);
         }
+        joined.names.push(record.name(joined.spans.len()));
         joined.spans.push(offset..offset + record.len());
     }
     Ok(joined)

@@ -96,7 +96,7 @@ impl Teller<'_, '_> {
             }),
             dependence: chosen.dependence,
         };
-        Ok(Finding {
+        let mut finding = Finding {
             schema: 1,
             verdict,
             track: chosen.track,
@@ -112,13 +112,24 @@ impl Teller<'_, '_> {
             ranking: self.ranking(chosen),
             not_found: self.not_found(chosen),
             distortion: BTreeMap::new(),
+            regime: BTreeMap::new(),
+            alone: vec![],
+            closed_loop: None,
             remarks,
             causes,
             interrupted: false,
             seconds: 0.0,
             series,
             extended,
-        })
+        };
+        self.regimes(&mut finding, &y_before, chosen);
+        self.parts(&mut finding, chosen);
+        // stretches of one record are no records
+        if !test.stretches {
+            self.shown(&mut finding, chosen);
+        }
+        self.feedback(&mut finding, chosen, used);
+        Ok(finding)
     }
 
     fn per_output(&self, value: impl Fn(usize) -> f64) -> BTreeMap<String, f64> {

@@ -2,7 +2,7 @@
 
 use super::page::{Page, share};
 use super::svg::Figure;
-use crate::diagnose::{Alternative, Cause, Curve, Finding, number};
+use crate::diagnose::{Alternative, Cause, Curve, Finding, InRecord, number};
 
 /// The section of what no cause was found for: the curve that comes nearest to it.
 pub fn unexplained(page: &mut Page, finding: &Finding) {
@@ -59,6 +59,12 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
     if !rows.is_empty() {
         page.table(&["parameter", "#value", "95 % interval", "unit"], &rows);
     }
+    if let Some(acts) = &cause.acts_where {
+        page.element("p", "", &format!("It acts {}.", acts.in_words()));
+    }
+    if let Some(records) = &cause.records {
+        shown(page, records);
+    }
     if let Some(rows) = &cause.rows {
         let shown: Vec<String> = rows.iter().take(60).map(ToString::to_string).collect();
         let more =
@@ -84,6 +90,47 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
     rows.extend(cause.indistinguishable.iter().map(|a| entry("looks alike", a)));
     rows.extend(cause.runners_up.iter().map(|a| entry("runner-up", a)));
     page.table(&["", "effect", "into", "of", "removes"], &rows);
+}
+
+/// The section of causes that single ones of several records show.
+pub fn alone(page: &mut Page, finding: &Finding) {
+    if finding.alone.is_empty() {
+        return;
+    }
+    page.heading("Single records");
+    for alone in &finding.alone {
+        let said = format!("{} on its own: {}", alone.record, alone.cause.sentence);
+        page.element("p", "", &said);
+        shown(page, alone.cause.records.as_deref().unwrap_or_default());
+    }
+}
+
+/// What each record says of a cause.
+fn shown(page: &mut Page, records: &[InRecord]) {
+    let rows = records.iter().map(|record| {
+        let weight = record.weight.map_or_else(
+            || "not moved by it".into(),
+            |g| match record.std_error {
+                Some(e) => {
+                    format!("{} \u{b1} {}", number(g, Some(e)), number(2.0 * e, Some(2.0 * e)))
+                }
+                None => number(g, None),
+            },
+        );
+        let shows = match record.shows {
+            Some(true) => "shows it",
+            Some(false) => "does not show it",
+            None => "cannot tell",
+        };
+        vec![record.record.clone(), weight, shows.into()]
+    });
+    page.table(&["record", "#weight", ""], &rows.collect::<Vec<_>>());
+    page.element(
+        "p",
+        "note",
+        "Weight of the model with the cause in the mixture with the model without it that is nearest \
+         to each record: 1 where the cause is there as named, 0 where it is not.",
+    );
 }
 
 fn title(cause: &Cause) -> String {

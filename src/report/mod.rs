@@ -72,6 +72,7 @@ impl<'a> Report<'a> {
             cause::section(&mut page, finding, index);
         }
         cause::unexplained(&mut page, finding);
+        cause::alone(&mut page, finding);
         signals::sections(&mut page, &finding.series, finding);
         distortion::section(&mut page, finding);
         tables::sections(&mut page, finding);

@@ -9,6 +9,7 @@ use crate::evaluate::Metrics;
 /// All sections that are tables.
 pub fn sections(page: &mut Page, finding: &Finding) {
     figures(page, finding);
+    regime(page, finding);
     other_track(page, finding);
     ranking(page, finding);
     not_found(page, finding);
@@ -52,6 +53,29 @@ fn figures(page: &mut Page, finding: &Finding) {
         "p",
         "note",
         "NRMSE is the RMSE over the measured standard deviation; fit is 100 (1 - NRMSE) per cent.",
+    );
+}
+
+fn regime(page: &mut Page, finding: &Finding) {
+    if finding.regime.is_empty() {
+        return;
+    }
+    page.heading("Where the error lives");
+    let rows: Vec<Vec<String>> = finding
+        .regime
+        .iter()
+        .map(|(name, regime)| {
+            let end = |value: f64| number(value, Some(0.05 * (regime.to - regime.from)));
+            let band = format!("{} to {} {}", end(regime.from), end(regime.to), regime.unit);
+            vec![name.clone(), band, share(regime.share)]
+        })
+        .collect();
+    page.table(&["output", "the model's error lives in", "with"], &rows);
+    page.element(
+        "p",
+        "note",
+        "The narrowest band that holds this share of the error's power above the noise, in both halves \
+         of the record; stated where it is a small part of where the output itself lives.",
     );
 }
 
@@ -186,6 +210,22 @@ fn left(page: &mut Page, finding: &Finding) {
             "p",
             "note",
             &format!("Residual of {name}: {word} (Ljung-Box score {score:.1})."),
+        );
+    }
+    if let Some(found) = &finding.closed_loop {
+        page.element("h3", "", "A closed loop");
+        let when = match found.same_sample_only {
+            true => "in the same sample",
+            false => "with a delay",
+        };
+        page.element(
+            "p",
+            "",
+            &format!(
+                "The part of {} that its own past does not predict depends on what is left, {when}: \
+                 score {:.1}.",
+                found.input, found.score
+            ),
         );
     }
     for remark in &finding.remarks {

@@ -150,13 +150,25 @@ pub(crate) fn mixture(ff: &[f64], fr: &[f64]) -> f64 {
     weight_score(ff, fr, 0.5)
 }
 
-/// (g - reference) over its block-robust standard error, as a normal score. Where f lives in a
-/// few blocks only, these few are all that the error is known from: one block that the weight
-/// was fitted to says nothing about it.
+/// (g - reference) over its block-robust standard error, as a normal score.
 fn weight_score(ff: &[f64], fr: &[f64], reference: f64) -> f64 {
+    robust(ff, fr)
+        .map_or(0.0, |(weight, error, freedom)| normal_score((weight - reference) / error, freedom))
+}
+
+/// The weight g of b in the mixture a + g (b - a), see [`mixture`], and its block-robust
+/// standard error; `None` where nothing tells them apart.
+pub(crate) fn weight(ff: &[f64], fr: &[f64]) -> Option<(f64, f64)> {
+    robust(ff, fr).map(|(weight, error, _)| (weight, error))
+}
+
+/// A weight, its standard error and the degrees of freedom of that. Where f lives in a few
+/// blocks only, these few are all that the error is known from: one block that the weight was
+/// fitted to says nothing about it.
+fn robust(ff: &[f64], fr: &[f64]) -> Option<(f64, f64, f64)> {
     let total: f64 = ff.iter().sum();
     if !(total > 0.0) {
-        return 0.0;
+        return None;
     }
     let weight = fr.iter().sum::<f64>() / total;
     let left: Vec<f64> = ff.iter().zip(fr).map(|(ff, fr)| fr - weight * ff).collect();
@@ -166,14 +178,13 @@ fn weight_score(ff: &[f64], fr: &[f64], reference: f64) -> f64 {
     let largest = in_blocks.iter().copied().fold(0.0, f64::max);
     let telling = in_blocks.iter().filter(|&&f| f > TELLING * largest).count();
     if telling < 2 {
-        return 0.0;
+        return None;
     }
     // the blocks without f have nothing left by construction
     let freed = |n: usize| n as f64 / (n as f64 - 1.0);
     let lost = (freed(telling) / freed(sums.len())).sqrt();
     let error = (sums.len() as f64).sqrt() * spread(&sums) * lost + 1e-12 * total;
-    let freedom = telling as f64 - 1.0;
-    normal_score((weight - reference) * total / error, freedom)
+    Some((weight, error / total, telling as f64 - 1.0))
 }
 
 /// Ljung-Box statistic on 20 lags as a normal score: how far from white.

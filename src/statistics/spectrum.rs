@@ -51,6 +51,20 @@ pub(crate) fn strongest(x: &[f64], dt: f64, count: usize) -> Vec<f64> {
     found
 }
 
+/// Powers of half-overlapping pieces of a signal under a Hann window (Welch, IEEE Trans. Audio
+/// Electroacoustics 15, 1967), each about its mean: white noise has its variance at every line.
+pub(crate) fn pieces(x: &[f64], size: usize) -> Vec<Vec<f64>> {
+    if size < 4 || x.len() < size {
+        return vec![];
+    }
+    let turn = 2.0 * std::f64::consts::PI / size as f64;
+    let window = |k: usize| 0.5 - 0.5 * (turn * k as f64).cos();
+    let energy: f64 = (0..size).map(|k| window(k).powi(2)).sum();
+    let starts = (0..=x.len() - size).step_by(size / 2);
+    let powers = starts.map(|from| transform(&x[from..from + size], size, window));
+    powers.map(|power| power.into_iter().map(|p| p / energy).collect()).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

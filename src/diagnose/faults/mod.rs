@@ -134,6 +134,8 @@ impl Fault {
             error_removed: self.removed,
             indistinguishable: self.or_in.iter().map(other).collect(),
             runners_up: vec![],
+            acts_where: None,
+            records: None,
             rows: Some(self.rows.iter().map(|k| k + 1).collect()),
         }
     }

@@ -1,0 +1,159 @@
+//! In which part of its coordinate's range a cause acts.
+
+use serde::Serialize;
+
+use super::candidate::Wire;
+use super::curves::source_of;
+use super::finding::Finding;
+use super::finished::Finished;
+use super::number;
+use super::problem::{Added, Grain, Model, Part};
+use super::teller::Teller;
+use crate::effect::curve;
+
+/// An effect acts where it is beyond this share of its largest value,
+const ACTS: f64 = 0.05;
+/// and rests where it is below this share,
+const RESTS: f64 = 1e-3;
+/// as it does in at least this share of the range in which it does not act: a stop does, a
+/// cubic spring does not.
+const AT_REST: f64 = 0.5;
+/// Share of the time that is all of it.
+const ALWAYS: f64 = 0.9;
+/// Points at which the range is looked at.
+const POINTS: usize = 2001;
+
+/// Where a cause acts, if its law is silent in a part of the coordinate's range: beyond stops,
+/// hinges and saturations.
+///
+/// It acts where it is more than 5 % of its largest value along the record.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ActsWhere {
+    /// The coordinate.
+    pub of: String,
+    /// Its unit.
+    pub unit: String,
+    /// It acts below this value; `None` where there is no such side.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub below: Option<f64>,
+    /// It acts above this value.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub above: Option<f64>,
+    /// Share of the time during which it acts.
+    pub share_of_time: f64,
+}
+
+impl ActsWhere {
+    /// The bounds in words: `only where level_1 > 6.10 m, 8 % of the time`.
+    pub fn in_words(&self) -> String {
+        let unit = if self.unit.is_empty() { String::new() } else { format!(" {}", self.unit) };
+        let bound = |sign: &str, at: f64| format!("{} {sign} {}{unit}", self.of, number(at, None));
+        let sides = [self.below.map(|at| bound("<", at)), self.above.map(|at| bound(">", at))];
+        let sides: Vec<String> = sides.into_iter().flatten().collect();
+        let share = super::words::percent(self.share_of_time);
+        format!("only where {}, {share} of the time", sides.join(" or "))
+    }
+}
+
+impl Teller<'_, '_> {
+    /// Says of every cause in which part of its coordinate's range it acts.
+    pub fn parts(&self, finding: &mut Finding, chosen: &Finished) {
+        for (index, cause) in finding.causes.iter_mut().take(chosen.causes()).enumerate() {
+            let acts = self.acts_where(&chosen.fitted.model, index);
+            if let Some(acts) = acts.filter(|_| cause.rows.is_none()) {
+                cause.sentence += &format!(" It acts {}.", acts.in_words());
+                cause.acts_where = Some(acts);
+            }
+        }
+    }
+
+    fn acts_where(&self, model: &Model, index: usize) -> Option<ActsWhere> {
+        let Added { cause, knobs } = &model.added[index];
+        let problem = self.problem;
+        let source = source_of(problem, cause)?;
+        let z: Vec<f64> = match cause.wire {
+            // on a path, the coordinate is what goes into it
+            Wire::Path => self.nominal.series(source).to_vec(),
+            _ => {
+                let job = problem.job(model, Grain::Fine)?;
+                let run = problem.system.run_seen(&job.plan, &problem.drive, &job.lane);
+                run.seen.into_iter().nth(source)?
+            }
+        };
+        let counted = problem.samples(Part::All).filter_map(|k| z.get(k).copied());
+        let counted: Vec<f64> = counted.filter(|v| v.is_finite()).collect();
+        let knobs = cause.clipped(knobs, problem.step(Grain::Fine));
+        let part = part(&counted, &|z| curve(cause.shape.as_ref(), &knobs, z))?;
+        Some(ActsWhere {
+            of: cause.of.clone()?,
+            unit: cause.units.1.clone(),
+            below: part.below,
+            above: part.above,
+            share_of_time: part.share,
+        })
+    }
+}
+
+struct ActingPart {
+    below: Option<f64>,
+    above: Option<f64>,
+    share: f64,
+}
+
+/// The outer part of a range in which a law acts, if it rests in the inner one.
+fn part(z: &[f64], law: &dyn Fn(&[f64]) -> Vec<f64>) -> Option<ActingPart> {
+    let low = z.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = z.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    if !(high > low) {
+        return None;
+    }
+    let at = |i: usize| low + (high - low) * i as f64 / (POINTS - 1) as f64;
+    let grid: Vec<f64> = (0..POINTS).map(at).collect();
+    let w = law(&grid);
+    let largest = w.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    if !(largest > 0.0 && largest.is_finite()) {
+        return None;
+    }
+    let acts: Vec<bool> = w.iter().map(|w| w.abs() > ACTS * largest).collect();
+    let first = acts.iter().position(|acts| !acts)?;
+    let last = acts.iter().rposition(|acts| !acts)?;
+    // one stretch of rest, with something outside it
+    if acts[first..=last].iter().any(|acts| *acts) || last - first + 1 == POINTS {
+        return None;
+    }
+    let rests = w[first..=last].iter().filter(|w| w.abs() < RESTS * largest).count();
+    if (rests as f64) < AT_REST * (last - first + 1) as f64 {
+        return None;
+    }
+    let below = (first > 0).then(|| grid[first]);
+    let above = (last + 1 < POINTS).then(|| grid[last]);
+    let acting = |z: &&f64| below.is_some_and(|at| **z < at) || above.is_some_and(|at| **z > at);
+    let share = z.iter().filter(acting).count() as f64 / z.len() as f64;
+    (share > 0.0 && share < ALWAYS).then_some(ActingPart { below, above, share })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn told(law: fn(f64) -> f64) -> Option<(Option<f64>, Option<f64>, f64)> {
+        let z: Vec<f64> = (0..1000).map(|k| (f64::from(k) * 0.1).sin()).collect();
+        let all = |z: &[f64]| -> Vec<f64> { z.iter().map(|z| law(*z)).collect() };
+        part(&z, &all).map(|p| (p.below, p.above, p.share))
+    }
+
+    #[test]
+    fn stops_act_in_a_part_and_springs_everywhere() {
+        let (below, above, share) = told(|z| -10.0 * (z - 0.5).max(0.0)).unwrap();
+        // 5 % of the way from the start to the end
+        assert!(below.is_none() && (above.unwrap() - 0.525).abs() < 0.01);
+        assert!((share - 0.324).abs() < 0.01, "{share}");
+        let (below, above, _) = told(|z| z.clamp(-0.8, 0.9) - z).unwrap();
+        assert!((below.unwrap() + 0.81).abs() < 0.01 && (above.unwrap() - 0.905).abs() < 0.01);
+        for law in [|z: f64| z, |z: f64| z * z, |z: f64| z.powi(3), |z: f64| (50.0 * z).tanh()] {
+            assert_eq!(told(law), None);
+        }
+        // never reached
+        assert_eq!(told(|z| (z - 2.0).max(0.0)), None);
+    }
+}
