@@ -230,13 +230,16 @@ impl<'a, 'b> Search<'a, 'b> {
                 {
                     // what stands beside the last of each pair, a known limit too
                     let others = pool[0].model.added.iter().rev().skip(1).rev();
-                    slots = others
+                    let others = others
                         .map(|added| Slot {
                             set: vec![(added.cause.clone(), 1.0)],
                             others: vec![],
                             score: 0.0,
                         })
                         .collect();
+                    if self.accepts_trial(&before, &pool[0]) {
+                        slots = others;
+                    }
                     trials = pool;
                 }
             }
@@ -257,7 +260,7 @@ impl<'a, 'b> Search<'a, 'b> {
             let (_, slot) = self.choose(&trials, held);
             slots.push(Slot { score, ..headed_by(slot, &trials[0].cause) });
             model = trials[0].model.clone();
-            only = (number == 0).then_some((trials, held));
+            only = (number == 0 && model.added.len() == 1).then_some((trials, held));
             if given_up {
                 full = false;
                 break;
