@@ -16,8 +16,10 @@ use super::surface::{NAME, Surface};
 use super::train::start;
 use crate::statistics::{corrected_score, dot};
 
-/// Laws that are trained, and from how many first weights each.
+/// Laws that are trained, how many steps before the best of them is known, and the seeds of its
+/// first weights.
 const TRAINED: usize = 3;
+const FEW: usize = 4;
 const SEEDS: [u64; 2] = [1, 2];
 /// Share of what is left that a law must predict where it was not fitted, and where what is left
 /// depends on no coordinate alone.
@@ -111,25 +113,28 @@ impl Search<'_, '_> {
         let (mut surfaces, tried) = drawing.surfaces(model, &y);
         surfaces.retain(|surface| surface.share > least);
         surfaces.truncate(TRAINED);
-        let (mut starts, mut of): (Vec<Model>, Vec<&Surface>) = (vec![], vec![]);
-        for surface in &surfaces {
-            for knobs in SEEDS.iter().filter_map(|&seed| start(surface, self.nominal, seed)) {
-                starts.push(model.with(&surface.cause, knobs));
-                of.push(surface);
-            }
-        }
+        let first = |surface: &Surface, seed: u64| {
+            Some(model.with(&surface.cause, start(surface, self.nominal, seed)?))
+        };
+        // a few steps show which place it is; the best is trained to the end, from elsewhere too
+        surfaces.retain(|surface| first(surface, SEEDS[0]).is_some());
+        let starts: Vec<Model> = surfaces.iter().filter_map(|s| first(s, SEEDS[0])).collect();
+        let mut few = Refit::search();
+        few.settings.iterations = FEW;
+        let squares = |f: &Fitted| dot(&f.residuals, &f.residuals);
+        let (surface, best) = refit(self.problem, &self.nuisance, &starts, few)
+            .into_iter()
+            .zip(&surfaces)
+            .filter_map(|(fitted, surface)| Some((surface, fitted?)))
+            .min_by(|a, b| squares(&a.1).total_cmp(&squares(&b.1)))?;
+        let starts: Vec<Model> =
+            std::iter::once(best.model).chain(first(surface, SEEDS[1])).collect();
         let fitted = refit(self.problem, &self.nuisance, &starts, Refit::search());
-        let mut trials: Vec<Trial> = vec![];
-        for surface in &surfaces {
-            let squares = |f: &Fitted| dot(&f.residuals, &f.residuals);
-            let own = fitted.iter().zip(&of).filter(|(_, s)| Arc::ptr_eq(&s.cause, &surface.cause));
-            let own = own.filter_map(|(fitted, _)| fitted.as_ref());
-            let Some(best) = own.min_by(|a, b| squares(a).total_cmp(&squares(b))) else { continue };
-            let y = self.problem.simulate(&best.model, Grain::Coarse);
-            trials.extend(trial(self.problem, &surface.cause, best.model.clone(), y, false));
-        }
-        trials.sort_by(|a, b| a.held.total_cmp(&b.held));
-        (!trials.is_empty()).then_some(Learned { without: y, trials, tried })
+        let best = fitted.into_iter().flatten();
+        let best = best.min_by(|a, b| squares(a).total_cmp(&squares(b)))?.model;
+        let learned = self.problem.simulate(&best, Grain::Coarse);
+        let learned = trial(self.problem, &surface.cause, best, learned, false)?;
+        Some(Learned { without: y, trials: vec![learned], tried })
     }
 
     /// Puts a shape of the library in the place of a learned law that is nothing else.
