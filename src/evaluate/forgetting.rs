@@ -5,19 +5,16 @@ use crate::system::{Drive, Origin};
 
 /// Relative size of the change of a start.
 const NUDGE: f64 = 1e-7;
-/// Growth from one time to twice that time which no integrator shows, but an instability does.
-const EXPONENTIAL: f64 = 20.0;
-/// Samples before which growth may be a transient.
-const TRANSIENT: usize = 8;
 /// Growth of an error in the start that a fitted stretch can bear.
 const BEARABLE: f64 = 100.0;
-/// Samples of the shortest stretch.
+/// Growth from one length of stretches to twice that length which no integrator shows, and which
+/// differences in the size of states cannot feign.
+const EXPONENTIAL: f64 = 4.0;
+/// Samples of the shortest stretch, and of the longest that is asked.
 const SHORTEST: usize = 20;
-/// Stretches that are asked how fast runs part in them.
-const ASKED: usize = 24;
-/// Places of a record at which it is asked whether runs part at all, and samples looked ahead.
-const PLACES: usize = 5;
-const AHEAD: usize = 2000;
+const LONGEST: usize = 1280;
+/// Stretches of one length that are asked how fast runs part in them.
+const ASKED: usize = 12;
 
 impl Run<'_> {
     /// Largest change of any state, in units of its size, that a small change of the start has
@@ -58,49 +55,57 @@ impl Run<'_> {
         grown
     }
 
+    /// Growth along stretches of a length, each from a start fitted to it so that it stays near
+    /// the data, and followed for `reach` samples.
+    fn grown(
+        &self,
+        segment: &std::ops::Range<usize>,
+        length: usize,
+        reach: usize,
+    ) -> Vec<Vec<f64>> {
+        let step = ((segment.len() - reach) / ASKED).max(1);
+        (segment.start..=segment.end - reach)
+            .step_by(step)
+            .map(|from| {
+                let own = self.start_of(from..from + length, segment.start, length);
+                self.growth(from..from + reach, &own)
+            })
+            .collect()
+    }
+
     /// Samples of the longest stretch over which a start can be fitted, if errors of the start
     /// grow exponentially; `None` where a free run over the whole record makes sense.
     ///
-    /// What grows like a power of time, as an integrator's offset does, at most doubles a few
-    /// times when time doubles; an unstable or chaotic system's error multiplies.
+    /// What grows like a power of time, as an integrator's offset does, hardly grows in units of
+    /// how far the states move meanwhile; an unstable or chaotic system's error multiplies.
     pub fn horizon(&self) -> Option<usize> {
         let segment = self.drive.segments.iter().max_by_key(|s| s.len())?.clone();
         let shortest = SHORTEST.max(5 * self.plan.sizes.x);
-        if segment.len() < 4 * shortest {
-            return None;
-        }
-        let places = (0..PLACES).map(|i| segment.start + i * (segment.len() - shortest) / PLACES);
-        let all: Vec<Vec<f64>> = places
-            .map(|from| {
-                let own = self.start_of(from..from + shortest, segment.start, shortest);
-                self.growth(from..segment.end.min(from + AHEAD), &own)
-            })
-            .collect();
-        let parts = |grown: &&Vec<f64>| {
-            (TRANSIENT..grown.len() / 2).any(|k| grown[2 * k] > EXPONENTIAL * grown[k])
-        };
-        let parting: Vec<&Vec<f64>> = all.iter().filter(parts).collect();
-        if 2 * parting.len() <= PLACES {
-            return None;
-        }
-        let within =
-            |grown: &[f64]| grown.iter().position(|g| *g > BEARABLE).unwrap_or(grown.len());
         let longest = segment.len() / 4;
-        let mut length = parting.iter().map(|grown| within(grown)).max()?.clamp(shortest, longest);
-        // free runs leave the data soon: ask near them, with starts fitted to all of a stretch
+        let quantile = |mut sorted: Vec<f64>, at: f64| {
+            sorted.sort_by(f64::total_cmp);
+            sorted.get((at * sorted.len() as f64) as usize).copied()
+        };
+        let (mut length, mut before) = (shortest, f64::INFINITY);
+        loop {
+            if length > longest.min(LONGEST) {
+                return None;
+            }
+            let ends = self.grown(&segment, length, length);
+            let ends = ends.iter().map(|grown| grown.last().copied().unwrap_or(1.0)).collect();
+            let grown = quantile(ends, 0.5)?;
+            if grown > BEARABLE && grown > EXPONENTIAL * before {
+                break;
+            }
+            (length, before) = (2 * length, grown);
+        }
         for _ in 0..2 {
             let reach = (2 * length).min(segment.len());
-            let step = ((segment.len() - reach) / ASKED).max(1);
-            let mut asked: Vec<usize> = (segment.start..=segment.end - reach)
-                .step_by(step)
-                .map(|from| {
-                    let own = self.start_of(from..from + length, segment.start, length);
-                    within(&self.growth(from..from + reach, &own))
-                })
-                .collect();
-            asked.sort_unstable();
+            let within = self.grown(&segment, length, reach).into_iter().map(|grown| {
+                grown.iter().position(|g| *g > BEARABLE).unwrap_or(grown.len()) as f64
+            });
             // three stretches of four bear that length
-            length = asked[asked.len() / 4].clamp(shortest, longest);
+            length = (quantile(within.collect(), 0.25)? as usize).clamp(shortest, longest);
         }
         Some(length)
     }
