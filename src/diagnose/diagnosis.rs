@@ -246,12 +246,12 @@ impl<'a> Diagnosis<'a> {
                 (&kept[..], test, FIT_OF_ALL / (1.0 - TEST_OF_ALL))
             }
         };
-        let mut whole = Prepared::new(self.system, used, share, Init::Forgotten)?;
+        let mut whole = Prepared::new(self.system, used, share, Some(Init::Forgotten))?;
         let windows = windows(used);
         let (chosen, other) = match &windows {
             None => whole.search(&self.allowed, most, watch)?,
             Some(windows) => {
-                let mut part = Prepared::new(self.system, windows, share, Init::Forgotten)?;
+                let mut part = Prepared::new(self.system, windows, share, Some(Init::Forgotten))?;
                 let (chosen, other) = part.search(&self.allowed, most, watch)?;
                 watch.tell(0.95, "fitting to all samples");
                 let chosen = whole.finish(&self.allowed, chosen)?;

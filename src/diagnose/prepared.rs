@@ -52,12 +52,12 @@ pub(crate) struct Prepared<'a> {
 
 impl<'a> Prepared<'a> {
     /// Joins records, of each of which the first `share` is fitted and the rest chooses; `init`
-    /// says how much of each finds its start.
+    /// says how much of each finds its start; `None`: all of it, as in stretches.
     pub fn new(
         system: &'a System,
         records: &[Record],
         share: f64,
-        init: Init,
+        init: Option<Init>,
     ) -> Result<Self, DiagnoseError> {
         let joined = join(&system.signals(), records)?;
         let (step, drive) = (joined.sampling_time, joined.drive.clone());
@@ -68,7 +68,10 @@ impl<'a> Prepared<'a> {
             .iter()
             .map(|record| {
                 let run = Run::new(system, record)?;
-                Ok(run.starts(run.init_samples(init)))
+                Ok(match init {
+                    Some(init) => run.starts(run.init_samples(init)),
+                    None => run.starts_of_stretches(),
+                })
             })
             .collect::<Result<Vec<_>, EvaluateError>>()?
             .concat();

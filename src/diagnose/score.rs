@@ -38,12 +38,12 @@ impl TestData {
             let run = Run::new(system, record)?;
             let count = run.init_samples(self.init);
             // the part before the test data may find the start, all of it
-            let (from, fitted) = match &self.from {
-                _ if self.stretches => (0, record.len()),
-                Some(from) => (from[r], from[r]),
-                None => (count, count),
+            let (from, starts) = match &self.from {
+                _ if self.stretches => (0, run.starts_of_stretches()),
+                Some(from) => (from[r], run.starts(from[r])),
+                None => (count, run.starts(count)),
             };
-            let track = run.track(run.starts(fitted));
+            let track = run.track(starts);
             for (o, measured) in run.measured.iter().enumerate() {
                 let Some(measured) = measured else { continue };
                 for k in from..measured.len() {

@@ -78,7 +78,7 @@ impl Diagnosis<'_> {
         };
         let step = first.sampling_time;
         let count = stretches.len();
-        let mut prepared = Prepared::new(self.system, &stretches, FIT, Init::Samples(usize::MAX))?;
+        let mut prepared = Prepared::new(self.system, &stretches, FIT, None)?;
         let (chosen, other) = prepared.search(&self.allowed, self.max_causes, watch)?;
         watch.tell(0.97, "measuring the gain");
         let test =

@@ -164,8 +164,10 @@ impl<'a> Fit<'a> {
             return Err(EvaluateError::NothingFree);
         }
         for (r, run) in runs.iter().enumerate() {
-            let fitted = stretch.unwrap_or_else(|| run.init_samples(Init::Forgotten));
-            let starts = run.starts(fitted);
+            let starts = match stretch {
+                Some(_) => run.starts_of_stretches(),
+                None => run.starts(run.init_samples(Init::Forgotten)),
+            };
             for (s, start) in starts.iter().enumerate() {
                 for (i, &value) in start.iter().enumerate() {
                     let size = value.abs().max(run.plan.signals.initial()[i].abs());

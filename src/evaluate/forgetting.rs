@@ -55,6 +55,26 @@ impl Run<'_> {
         grown
     }
 
+    /// The initial state of a stretch, fitted to more and more of it: all at once, the cost has
+    /// many minima where runs part.
+    fn patient_start(&self, stretch: std::ops::Range<usize>, origin: usize) -> Vec<f64> {
+        let mut start = self.plan.signals.initial();
+        let mut count = SHORTEST;
+        loop {
+            start = self.start_from(stretch.clone(), origin, count, start);
+            if count >= stretch.len() {
+                return start;
+            }
+            count *= 2;
+        }
+    }
+
+    /// Initial states of all segments, each fitted to all of it.
+    pub fn starts_of_stretches(&self) -> Vec<Vec<f64>> {
+        let segments = self.drive.segments.iter().zip(&self.drive.origins);
+        segments.map(|(segment, &origin)| self.patient_start(segment.clone(), origin)).collect()
+    }
+
     /// Growth along stretches of a length, each from a start fitted to it so that it stays near
     /// the data, and followed for `reach` samples.
     fn grown(
@@ -67,7 +87,7 @@ impl Run<'_> {
         (segment.start..=segment.end - reach)
             .step_by(step)
             .map(|from| {
-                let own = self.start_of(from..from + length, segment.start, length);
+                let own = self.patient_start(from..from + length, segment.start);
                 self.growth(from..from + reach, &own)
             })
             .collect()
@@ -128,7 +148,7 @@ impl Run<'_> {
     /// its own; not a number where nothing can be simulated.
     pub fn in_stretches(mut self, length: usize) -> Vec<(String, Vec<f64>)> {
         self.cut(length, usize::MAX);
-        let track = self.track(self.starts(length));
+        let track = self.track(self.starts_of_stretches());
         let names = self.plan.signals.outputs.iter().map(|s| s.name.clone());
         names.zip(track.y).collect()
     }

@@ -169,11 +169,17 @@ impl<'a> Run<'a> {
             .collect()
     }
 
-    pub(super) fn start_of(
+    fn start_of(&self, segment: std::ops::Range<usize>, origin: usize, count: usize) -> Vec<f64> {
+        self.start_from(segment, origin, count, self.plan.signals.initial())
+    }
+
+    /// The initial state of a segment, fitted to its first `count` samples from a guess.
+    pub(super) fn start_from(
         &self,
         segment: std::ops::Range<usize>,
         origin: usize,
         count: usize,
+        guess: Vec<f64>,
     ) -> Vec<f64> {
         let initial = self.plan.signals.initial();
         let end = (segment.start + count).min(segment.end);
@@ -185,9 +191,10 @@ impl<'a> Run<'a> {
         let scales: Vec<f64> = self.state_scales(&drive, &initial);
         let unknowns = initial
             .iter()
+            .zip(&guess)
             .zip(&scales)
             // far away only if the data insist: unseen states stay where they were
-            .map(|(&x, &s)| Unknown::new(x, 0.1 * s).expected(x, 100.0 * s));
+            .map(|((&x, &guess), &s)| Unknown::new(guess, 0.1 * s).expected(x, 100.0 * s));
         let settings = Settings { iterations: 40, tolerance: 1e-10, difference: 1e-4 };
         let mut fit = Levenberg::new(unknowns.collect(), settings);
         while !fit.is_done() {
