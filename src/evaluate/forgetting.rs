@@ -14,7 +14,7 @@ const EXPONENTIAL: f64 = 4.0;
 const SHORTEST: usize = 20;
 const LONGEST: usize = 1280;
 /// Stretches of one length that are asked how fast runs part in them.
-const ASKED: usize = 12;
+const ASKED: usize = 8;
 
 impl Run<'_> {
     /// Largest change of any state, in units of its size, that a small change of the start has
@@ -106,18 +106,33 @@ impl Run<'_> {
             sorted.sort_by(f64::total_cmp);
             sorted.get((at * sorted.len() as f64) as usize).copied()
         };
+        let reach = longest.min(LONGEST);
+        if reach < shortest {
+            return None;
+        }
+        let step = ((segment.len() - reach) / ASKED).max(1);
+        let places: Vec<usize> =
+            (segment.start..=segment.end - reach).step_by(step).take(ASKED).collect();
+        let mut starts = vec![self.plan.signals.initial(); places.len()];
         let (mut length, mut before) = (shortest, f64::INFINITY);
         loop {
-            if length > longest.min(LONGEST) {
-                return None;
+            let mut ends = vec![];
+            for (&from, start) in places.iter().zip(&mut starts) {
+                let stretch = from..from + length;
+                let guess = std::mem::take(start);
+                *start = self.start_from(stretch.clone(), segment.start, length, guess);
+                ends.extend(self.growth(stretch, start).last());
             }
-            let ends = self.grown(&segment, length, length);
-            let ends = ends.iter().map(|grown| grown.last().copied().unwrap_or(1.0)).collect();
             let grown = quantile(ends, 0.5)?;
             if grown > BEARABLE && grown > EXPONENTIAL * before {
                 break;
             }
+            // what grows too slowly to come that far is not asked any further
+            let enough = BEARABLE.powf(length as f64 / reach as f64);
             (length, before) = (2 * length, grown);
+            if grown < enough || length > reach {
+                return None;
+            }
         }
         for _ in 0..2 {
             let reach = (2 * length).min(segment.len());
