@@ -74,6 +74,7 @@ fn a_right_model_of_an_unstable_plant_is_left_alone() {
 }
 
 #[test]
+#[ignore = "takes a minute: cargo test --test hard_plants -- --ignored"]
 fn dry_friction_in_an_unstable_plant_is_named() {
     let finding = diagnosed(&held_up(0.08, 3));
     let first = &finding.causes[0];
