@@ -101,3 +101,15 @@ fn the_parameters_of_an_unstable_plant_are_estimated() {
         assert!((found.value - truth).abs() < 0.1 * truth, "{} = {}", found.name, found.value);
     }
 }
+
+#[test]
+fn outliers_are_found_where_they_stand_in_the_record() {
+    let mut record = held_up(0.0, 2);
+    let at: Vec<usize> = (0..25).map(|i| 40 + 90 * i).collect();
+    at.iter().for_each(|&k| record.outputs[0].values[k] += 0.3);
+    let finding = diagnosed(&record);
+    let outliers = finding.causes.iter().find(|cause| cause.effect == "outliers");
+    let rows = outliers.and_then(|cause| cause.rows.clone()).unwrap();
+    assert!(rows.len() > 15, "{rows:?}");
+    assert!(rows.iter().all(|row| at.contains(&(row - 1))), "{rows:?} are not of {at:?}");
+}

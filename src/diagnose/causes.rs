@@ -206,7 +206,6 @@ impl Teller<'_, '_> {
             let unit = parameters[p].unit.clone();
             let value =
                 Value { name: "value".into(), value: moved.to, std_error: moved.std_error, unit };
-            let far = moved.std_error.map_or(0.0, |e| (moved.to - moved.from).abs() / e);
             causes.push(Cause {
                 effect: "parameter".into(),
                 into: moved.name.clone(),
@@ -221,7 +220,7 @@ impl Teller<'_, '_> {
                     super::words::percent(share),
                 ),
                 parameters: vec![value],
-                p_value: either(by_test, far, 2 * chosen.nuisance.free.len()),
+                p_value: either(by_test, moved.distance(), 2 * chosen.nuisance.free.len()),
                 error_removed: share,
                 indistinguishable: vec![],
                 runners_up: vec![],

@@ -8,9 +8,9 @@ use super::faults::{Fault, flipped, retimed, strike};
 use super::finding::{Finding, Track};
 use super::library::Allowed;
 use super::prepared::{Prepared, windows};
-use super::score::TestData;
+use super::records::firsts;
+use super::score::{Counted, TestData};
 use super::stretches::horizon;
-use super::teller::Teller;
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run, Simulation};
 use crate::system::System;
@@ -20,9 +20,14 @@ use crate::watch::Watch;
 pub(super) const FIT: f64 = 0.7;
 /// Shares when the estimation data must serve as test data too.
 const FIT_OF_ALL: f64 = 0.6;
-pub(super) const TEST_OF_ALL: f64 = 0.2;
+const TEST_OF_ALL: f64 = 0.2;
 /// A cause in the machine explains as much as a wrong clock if it removes so much less at most.
 const AS_MUCH: f64 = 0.02;
+
+/// First sample of the part of a record that is kept for the test where there is no other.
+pub(super) fn kept_from(record: &Record) -> usize {
+    ((1.0 - TEST_OF_ALL) * record.len() as f64) as usize
+}
 
 /// Records without the faults that were found in them.
 #[derive(Clone)]
@@ -132,15 +137,24 @@ impl<'a> Diagnosis<'a> {
         for record in records {
             self.check_baseline(record)?;
         }
-        if let Some(length) = horizon(self.system, records)? {
-            let mut finding = self.by_stretches(records, test, length, watch)?;
-            finding.coarse(records);
-            finding.distorted(records);
-            finding.interrupted = watch.stopped();
-            watch.tell(1.0, "done");
-            finding.seconds = started.elapsed().as_secs_f64();
-            return Ok(finding);
-        }
+        let mut finding = match horizon(self.system, records)? {
+            None => self.in_one_go(records, test, watch)?,
+            Some(length) => self.by_stretches(records, test, length, watch)?,
+        };
+        finding.coarse(records);
+        finding.interrupted = watch.stopped();
+        watch.tell(1.0, "done");
+        finding.seconds = started.elapsed().as_secs_f64();
+        Ok(finding)
+    }
+
+    /// The diagnosis of records that a free run can follow from end to end.
+    fn in_one_go(
+        &self,
+        records: &[Record],
+        test: Option<&Record>,
+        watch: &dyn Watch,
+    ) -> Result<Finding, DiagnoseError> {
         let mended = self.mended(records, test)?;
         let clock = retimed(self.system, &mended.records)?;
         let mut finding = match &clock {
@@ -149,11 +163,7 @@ impl<'a> Diagnosis<'a> {
         };
         self.alone(&mut finding, &mended.records, watch)?;
         finding.add(&mended.faults);
-        finding.coarse(records);
         finding.distorted(&mended.records);
-        finding.interrupted = watch.stopped();
-        watch.tell(1.0, "done");
-        finding.seconds = started.elapsed().as_secs_f64();
         Ok(finding)
     }
 
@@ -225,33 +235,22 @@ impl<'a> Diagnosis<'a> {
         let kept: Vec<Record>;
         let (used, test, share) = match test {
             Some(record) => {
-                let test = TestData {
-                    records: vec![record.clone()],
-                    from: None,
-                    init: self.init,
-                    stretches: false,
-                };
-                (records, test, FIT)
+                let counted = Counted::After(self.init);
+                (records, TestData { records: vec![record.clone()], counted }, FIT)
             }
             None => {
-                let end = |r: &Record| ((1.0 - TEST_OF_ALL) * r.len() as f64) as usize;
-                kept = records.iter().map(|r| r.slice(0..end(r))).collect();
-                let from = records.iter().map(end).collect();
-                let test = TestData {
-                    records: records.to_vec(),
-                    from: Some(from),
-                    init: self.init,
-                    stretches: false,
-                };
+                kept = records.iter().map(|r| r.slice(0..kept_from(r))).collect();
+                let counted = Counted::From(records.iter().map(kept_from).collect());
+                let test = TestData { records: records.to_vec(), counted };
                 (&kept[..], test, FIT_OF_ALL / (1.0 - TEST_OF_ALL))
             }
         };
-        let mut whole = Prepared::new(self.system, used, share, Some(Init::Forgotten))?;
+        let mut whole = Prepared::new(self.system, used, share)?;
         let windows = windows(used);
         let (chosen, other) = match &windows {
             None => whole.search(&self.allowed, most, watch)?,
             Some(windows) => {
-                let mut part = Prepared::new(self.system, windows, share, Some(Init::Forgotten))?;
+                let mut part = Prepared::new(self.system, windows, share)?;
                 let (chosen, other) = part.search(&self.allowed, most, watch)?;
                 watch.tell(0.95, "fitting to all samples");
                 let chosen = whole.finish(&self.allowed, chosen)?;
@@ -259,13 +258,10 @@ impl<'a> Diagnosis<'a> {
             }
         };
         watch.tell(0.97, "measuring the gain");
-        let teller = Teller {
-            system: self.system,
-            problem: &whole.problem,
-            nominal: &whole.nominal,
-            joined: &whole.joined,
-        };
-        teller.tell(&whole.start, &chosen, other.as_ref(), &test, used)
+        let teller = whole.teller();
+        let mut finding = teller.tell(&whole.start, &chosen, other.as_ref(), &test, used)?;
+        finding.place_rows(&whole.joined, &firsts(records));
+        Ok(finding)
     }
 
     /// Says at which sample a baseline leaves the finite numbers, if it does.

@@ -81,7 +81,7 @@ impl Finished {
 
     /// Whether no cause was found but what was known before: limits of the instruments.
     pub(super) fn found_nothing(&self) -> bool {
-        self.fitted.model.added.len() == self.fitted.model.known()
+        self.causes() == self.fitted.model.known()
     }
 
     /// Where the free parameters went.
@@ -108,14 +108,18 @@ impl Finished {
             Wire::Parameter(_) => NUMBER,
             _ => CHOICE + NUMBER * added.cause.unknowns() as f64,
         });
-        let moved = self.moved.len().max(usize::from(self.moved_together));
-        causes.sum::<f64>() + NUMBER * moved as f64
+        causes.sum::<f64>() + NUMBER * self.count_moved() as f64
+    }
+
+    /// Parameters moved; along a ridge it is one, whichever.
+    fn count_moved(&self) -> usize {
+        self.moved.len().max(usize::from(self.moved_together))
     }
 
     /// How much it takes: causes plus parameters moved.
     pub(super) fn price(&self) -> usize {
         let causes = self.fitted.model.added.iter();
         let causes: usize = causes.map(|added| added.cause.price()).sum();
-        causes + self.moved.len().max(usize::from(self.moved_together))
+        causes + self.count_moved()
     }
 }

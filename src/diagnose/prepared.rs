@@ -7,6 +7,7 @@ use super::nominal::Nominal;
 use super::nuisance::Nuisance;
 use super::problem::{Grain, Model, Problem};
 use super::records::{Joined, join};
+use super::teller::Teller;
 use super::track::Tracks;
 use crate::data::Record;
 use crate::diagnose::Track;
@@ -51,13 +52,26 @@ pub(crate) struct Prepared<'a> {
 }
 
 impl<'a> Prepared<'a> {
-    /// Joins records, of each of which the first `share` is fitted and the rest chooses; `init`
-    /// says how much of each finds its start; `None`: all of it, as in stretches.
-    pub fn new(
+    /// Joins records, of each of which the first `share` is fitted and the rest chooses.
+    pub fn new(system: &'a System, records: &[Record], share: f64) -> Result<Self, DiagnoseError> {
+        let starts = |run: &Run<'_>| run.starts(run.init_samples(Init::Forgotten));
+        Self::started(system, records, share, starts)
+    }
+
+    /// The same for stretches of a system that does not forget where it starts.
+    pub fn in_stretches(
         system: &'a System,
         records: &[Record],
         share: f64,
-        init: Option<Init>,
+    ) -> Result<Self, DiagnoseError> {
+        Self::started(system, records, share, |run| run.starts_of_stretches())
+    }
+
+    fn started(
+        system: &'a System,
+        records: &[Record],
+        share: f64,
+        starts: impl Fn(&Run<'_>) -> Vec<Vec<f64>>,
     ) -> Result<Self, DiagnoseError> {
         let joined = join(&system.signals(), records)?;
         let (step, drive) = (joined.sampling_time, joined.drive.clone());
@@ -66,13 +80,7 @@ impl<'a> Prepared<'a> {
         let mut start = problem.baseline();
         start.starts = records
             .iter()
-            .map(|record| {
-                let run = Run::new(system, record)?;
-                Ok(match init {
-                    Some(init) => run.starts(run.init_samples(init)),
-                    None => run.starts_of_stretches(),
-                })
-            })
+            .map(|record| Ok(starts(&Run::new(system, record)?)))
             .collect::<Result<Vec<_>, EvaluateError>>()?
             .concat();
         if problem.simulate(&start, Grain::Fine).is_none() {
@@ -83,6 +91,12 @@ impl<'a> Prepared<'a> {
         let nominal = Nominal::new(&problem, &start).ok_or_else(|| diverges(&source))?;
         problem.coarsen(&start);
         Ok(Self { joined, problem, start, nominal, source })
+    }
+
+    /// What tells of the findings.
+    pub fn teller(&self) -> Teller<'_, 'a> {
+        let Self { problem, nominal, joined, .. } = self;
+        Teller { system: problem.system, problem, nominal, joined }
     }
 
     /// Searches both tracks; the chosen one comes first.

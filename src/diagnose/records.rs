@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::error::DiagnoseError;
+use super::finding::Finding;
 use crate::data::Record;
 use crate::evaluate::{drive, measured};
 use crate::model::Signals;
@@ -18,6 +19,29 @@ pub(crate) struct Joined {
     /// Samples of each record.
     pub spans: Vec<Range<usize>>,
     pub sampling_time: f64,
+}
+
+/// Number of the first sample of each record, those of all records counted one after the other.
+pub(crate) fn firsts(records: &[Record]) -> Vec<usize> {
+    let counted = records.iter().scan(0, |before, record| {
+        let first = *before;
+        *before += record.len();
+        Some(first)
+    });
+    counted.collect()
+}
+
+impl Finding {
+    /// Counts the rows of faults, which are rows of joined records, as rows of all records one
+    /// after the other, where the first sample of each joined one has a number of its own.
+    pub(super) fn place_rows(&mut self, joined: &Joined, firsts: &[usize]) {
+        for row in self.causes.iter_mut().filter_map(|cause| cause.rows.as_mut()).flatten() {
+            let mut spans = joined.spans.iter().zip(firsts);
+            if let Some((span, first)) = spans.find(|(span, _)| span.contains(&(*row - 1))) {
+                *row = *row - span.start + first;
+            }
+        }
+    }
 }
 
 impl Record {

@@ -12,13 +12,17 @@ use crate::system::System;
 /// Data that nothing was fitted to or chosen on.
 pub(crate) struct TestData {
     pub records: Vec<Record>,
-    /// First sample that counts in each record; before it the data were used. `None`: a
-    /// record of its own, whose start is found from its first samples.
-    pub from: Option<Vec<usize>>,
-    pub init: Init,
-    /// Whether the records are stretches, each of which finds its start from all its samples,
-    /// and all of which count.
-    pub stretches: bool,
+    pub counted: Counted,
+}
+
+/// Which samples of test records count, and which find the starts.
+pub(crate) enum Counted {
+    /// The first ones find the start, the others count.
+    After(Init),
+    /// From these samples on, one per record; what is before them was used, and finds the start.
+    From(Vec<usize>),
+    /// All of them count and find the start: stretches of a system that does not forget it.
+    All,
 }
 
 /// A model's errors on the test data.
@@ -36,12 +40,13 @@ impl TestData {
         let mut pairs: Vec<(Vec<f64>, Vec<f64>)> = vec![(vec![], vec![]); signals.outputs.len()];
         for (r, record) in self.records.iter().enumerate() {
             let run = Run::new(system, record)?;
-            let count = run.init_samples(self.init);
-            // the part before the test data may find the start, all of it
-            let (from, starts) = match &self.from {
-                _ if self.stretches => (0, run.starts_of_stretches()),
-                Some(from) => (from[r], run.starts(from[r])),
-                None => (count, run.starts(count)),
+            let (from, starts) = match &self.counted {
+                Counted::After(init) => {
+                    let count = run.init_samples(*init);
+                    (count, run.starts(count))
+                }
+                Counted::From(from) => (from[r], run.starts(from[r])),
+                Counted::All => (0, run.starts_of_stretches()),
             };
             let track = run.track(starts);
             for (o, measured) in run.measured.iter().enumerate() {
@@ -67,7 +72,8 @@ impl TestData {
         let signals = system.signals();
         (0..signals.outputs.len())
             .map(|o| {
-                let whole = self.records.first().filter(|_| self.from.is_none());
+                let whole =
+                    self.records.first().filter(|_| !matches!(self.counted, Counted::From(_)));
                 let periods = whole.and_then(Record::periods);
                 if let (Some(record), Some(periods)) = (whole, periods)
                     && let Some(y) = record.outputs.get(o)

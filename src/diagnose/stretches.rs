@@ -2,46 +2,44 @@
 //! into stretches short enough to be simulated in one go, each with a start of its own (multiple
 //! shooting: Bock, 1981).
 
-use super::diagnosis::{Diagnosis, FIT, TEST_OF_ALL};
+use super::diagnosis::{Diagnosis, FIT, kept_from};
 use super::error::DiagnoseError;
 use super::faults::strike;
 use super::finding::Finding;
 use super::nuisance::SEGMENTS;
 use super::prepared::Prepared;
-use super::score::TestData;
-use super::teller::Teller;
+use super::records::firsts;
+use super::score::{Counted, TestData};
 use crate::data::Record;
-use crate::evaluate::{EvaluateError, Init, Run};
+use crate::evaluate::{EvaluateError, Run};
 use crate::system::System;
 use crate::watch::Watch;
 
 /// Samples over which every record can be simulated in one go; `None` where that is all of it.
 pub(crate) fn horizon(system: &System, records: &[Record]) -> Result<Option<usize>, EvaluateError> {
-    let mut shortest: Option<usize> = None;
-    for record in records {
-        if let Some(length) = Run::new(system, record)?.horizon() {
-            shortest = Some(shortest.map_or(length, |least| least.min(length)));
-        }
-    }
-    Ok(shortest)
+    let each = records.iter().map(|record| Ok(Run::new(system, record)?.horizon()));
+    let each: Vec<Option<usize>> = each.collect::<Result<_, EvaluateError>>()?;
+    Ok(each.into_iter().flatten().min())
 }
 
-/// Stretches of a length of records, at most `most`, spread over all of them.
-fn cut(records: &[Record], length: usize, most: usize) -> Vec<Record> {
-    let all: Vec<(&Record, usize)> = records
+/// Stretches of a length of records, at most `most`, spread over all of them; with the record
+/// of each and the sample at which it begins there.
+fn cut(records: &[Record], length: usize, most: usize) -> (Vec<(usize, usize)>, Vec<Record>) {
+    let all: Vec<(usize, usize)> = records
         .iter()
-        .flat_map(|record| {
+        .enumerate()
+        .flat_map(|(r, record)| {
             let inside = |from: &usize| {
                 // a stretch with a gap in it would be two
                 record.segments.iter().any(|s| s.contains(from) && s.end >= from + length)
             };
             let starts = record.segments.iter().flat_map(|s| s.clone().step_by(length));
-            starts.filter(inside).map(move |from| (record, from)).collect::<Vec<_>>()
+            starts.filter(inside).map(move |from| (r, from)).collect::<Vec<_>>()
         })
         .collect();
     let every = all.len().div_ceil(most.max(1)).max(1);
     let kept = all.into_iter().step_by(every);
-    kept.map(|(record, from)| record.slice(from..from + length)).collect()
+    kept.map(|(r, from)| ((r, from), records[r].slice(from..from + length))).unzip()
 }
 
 impl Diagnosis<'_> {
@@ -53,44 +51,37 @@ impl Diagnosis<'_> {
         length: usize,
         watch: &dyn Watch,
     ) -> Result<Finding, DiagnoseError> {
-        let end = |r: &Record| ((1.0 - TEST_OF_ALL) * r.len() as f64) as usize;
-        let (used, tested) = match test {
+        let (mut used, tested): (Vec<Record>, Vec<Record>) = match test {
             Some(record) => (records.to_vec(), vec![record.clone()]),
-            None => (
-                records.iter().map(|r| r.slice(0..end(r))).collect(),
-                records.iter().map(|r| r.slice(end(r)..r.len())).collect(),
-            ),
+            None => records
+                .iter()
+                .map(|r| (r.slice(0..kept_from(r)), r.slice(kept_from(r)..r.len())))
+                .unzip(),
         };
-        let (mut used, mut faults, mut before) = (used, vec![], 0);
-        for record in &mut used {
+        let (mut faults, firsts) = (vec![], firsts(records));
+        for (record, first) in used.iter_mut().zip(&firsts) {
             let run = Run::new(self.system, record)?;
             let y = run.in_stretches(length);
-            let (mended, found) = strike(record, &y, before);
-            before += record.len();
+            let (mended, found) = strike(record, &y, *first);
             *record = mended;
             faults.extend(found);
         }
-        let stretches = cut(&used, length, SEGMENTS);
-        let tested = cut(&tested, length, usize::MAX);
+        let (begin, stretches) = cut(&used, length, SEGMENTS);
+        let (_, tested) = cut(&tested, length, usize::MAX);
         let (Some(first), false) = (stretches.first(), tested.is_empty()) else {
             let source = records.first().map_or_else(String::new, |r| r.source.clone());
             return Err(DiagnoseError::TooUnstable { record: source, length });
         };
         let step = first.sampling_time;
         let count = stretches.len();
-        let mut prepared = Prepared::new(self.system, &stretches, FIT, None)?;
+        let mut prepared = Prepared::in_stretches(self.system, &stretches, FIT)?;
         let (chosen, other) = prepared.search(&self.allowed, self.max_causes, watch)?;
         watch.tell(0.97, "measuring the gain");
-        let test =
-            TestData { records: tested, from: None, init: Init::Samples(0), stretches: true };
-        let teller = Teller {
-            system: self.system,
-            problem: &prepared.problem,
-            nominal: &prepared.nominal,
-            joined: &prepared.joined,
-        };
-        let mut finding =
-            teller.tell(&prepared.start, &chosen, other.as_ref(), &test, &stretches)?;
+        let test = TestData { records: tested, counted: Counted::All };
+        let (start, other) = (&prepared.start, other.as_ref());
+        let mut finding = prepared.teller().tell(start, &chosen, other, &test, &stretches)?;
+        let begin: Vec<usize> = begin.iter().map(|&(r, from)| firsts[r] + from).collect();
+        finding.place_rows(&prepared.joined, &begin);
         finding.remarks.insert(
             0,
             format!(
@@ -102,6 +93,7 @@ impl Diagnosis<'_> {
             ),
         );
         finding.add(&faults);
+        finding.distorted(records);
         Ok(finding)
     }
 }
@@ -115,11 +107,12 @@ mod tests {
         let mut u: Vec<f64> = (0..100).map(f64::from).collect();
         u[25] = f64::NAN;
         let record = Record::new(1.0).input("u", u).unwrap();
-        let all = cut(std::slice::from_ref(&record), 10, 99);
+        let (begin, all) = cut(std::slice::from_ref(&record), 10, 99);
+        assert_eq!(begin[..3], [(0, 0), (0, 10), (0, 26)]);
         let starts: Vec<f64> = all.iter().map(|r| r.inputs[0].values[0]).collect();
         assert_eq!(starts, [0.0, 10.0, 26.0, 36.0, 46.0, 56.0, 66.0, 76.0, 86.0]);
         assert!(all.iter().all(|r| r.len() == 10 && r.segments.len() == 1));
-        let some = cut(&[record], 10, 3);
+        let (_, some) = cut(&[record], 10, 3);
         assert_eq!(some.len(), 3);
         assert_eq!(some[2].inputs[0].values[0], 66.0);
     }

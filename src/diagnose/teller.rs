@@ -16,7 +16,7 @@ use super::nominal::Nominal;
 use super::nuisance::{Refit, refit};
 use super::problem::{Grain, Model, Part, Problem};
 use super::records::Joined;
-use super::score::{TestData, gain};
+use super::score::{Counted, TestData, gain};
 use super::sketch;
 use super::surface;
 use crate::data::Record;
@@ -125,7 +125,7 @@ impl Teller<'_, '_> {
         self.regimes(&mut finding, &y_before, chosen);
         self.parts(&mut finding, chosen);
         // stretches of one record are no records
-        if !test.stretches {
+        if !matches!(test.counted, Counted::All) {
             self.shown(&mut finding, chosen);
         }
         self.feedback(&mut finding, chosen, used);

@@ -35,7 +35,7 @@ pub(crate) struct Tracks<'a, 'b> {
     pub watch: &'a dyn Watch,
 }
 
-impl Tracks<'_, '_> {
+impl<'a, 'b> Tracks<'a, 'b> {
     /// Searches both tracks; the chosen one comes first.
     pub fn run(mut self) -> Option<(Finished, Option<Finished>)> {
         let (chosen, other) = self.both()?;
@@ -116,12 +116,16 @@ impl Tracks<'_, '_> {
 
     /// The search from moved parameters for a single cause beside them, if that leaves nothing.
     fn one_cause(&mut self, free: &Nuisance, moved: &Model) -> Option<Finished> {
-        let (allowed, watch) = (self.allowed, self.watch);
-        let mut search = Search::new(self.problem, self.nominal, free.clone(), allowed, 1, watch);
+        let mut search = self.begin(free.clone(), 1);
         search.share = (0.9, 0.95);
         let found = search.run(moved.clone())?;
         let finished = self.finish(Track::ParametersFree, found, free.clone())?;
         (finished.dependence < DEPENDS).then_some(finished)
+    }
+
+    fn begin(&mut self, nuisance: Nuisance, most: usize) -> Search<'_, 'b> {
+        let Self { nominal, allowed, watch, .. } = *self;
+        Search::new(self.problem, nominal, nuisance, allowed, most, watch)
     }
 
     fn search(
@@ -131,8 +135,7 @@ impl Tracks<'_, '_> {
         share: (f64, f64),
         rival: Option<(Arc<Vec<Vec<f64>>>, f64)>,
     ) -> Option<Found> {
-        let (allowed, most, watch) = (self.allowed, self.most, self.watch);
-        let mut search = Search::new(self.problem, self.nominal, nuisance, allowed, most, watch);
+        let mut search = self.begin(nuisance, self.most);
         (search.share, search.rival) = (share, rival);
         search.run(start.clone())
     }
@@ -155,9 +158,7 @@ impl Tracks<'_, '_> {
                 slots.remove(i);
             }
         }
-        let (allowed, most, watch) = (self.allowed, self.most, self.watch);
-        let mut search =
-            Search::new(self.problem, self.nominal, free.clone(), allowed, most, watch);
+        let mut search = self.begin(free.clone(), self.most);
         model = search.fitted(model);
         search.prune_all(&mut model, &mut slots);
         let spikes = self.problem.spikes();
@@ -177,8 +178,7 @@ impl Tracks<'_, '_> {
         }
         // while parameters are held, a richer shape may make up for them
         let mut found = finished.found;
-        let mut search =
-            Search::new(self.problem, self.nominal, free.clone(), allowed, most, watch);
+        let mut search = self.begin(free.clone(), self.most);
         search.settle(&mut found.model, &mut found.slots);
         self.finish(Track::ParametersFree, found, free.clone())
     }

@@ -31,7 +31,7 @@ use super::library::Allowed;
 use super::prepared::{Prepared, windows};
 use super::problem::{Grain, Part};
 use crate::data::Record;
-use crate::evaluate::{EvaluateError, Init};
+use crate::evaluate::EvaluateError;
 use crate::statistics::deviation;
 use crate::system::System;
 use crate::watch::Watch;
@@ -90,12 +90,7 @@ impl<'a> Planner<'a> {
         }
         watch.tell(0.0, "following the model along the record");
         let parts = windows(records);
-        let mut prepared = Prepared::new(
-            self.system,
-            parts.as_deref().unwrap_or(records),
-            1.0,
-            Some(Init::Forgotten),
-        )?;
+        let mut prepared = Prepared::new(self.system, parts.as_deref().unwrap_or(records), 1.0)?;
         let source = records.first().map_or_else(String::new, |r| r.source.clone());
         let diverges = || EvaluateError::Diverges { record: source.clone(), sample: 0, time: 0.0 };
         let noise = noise(&prepared, records).ok_or_else(diverges)?;
