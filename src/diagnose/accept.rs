@@ -14,6 +14,8 @@ const STRONG: f64 = 0.6;
 pub(super) const DOUBLY_STRONG: f64 = STRONG * STRONG;
 /// Score on the part that chooses that confirms what the fitted part leaves no doubt of.
 const CONFIRMED: f64 = 2.5;
+/// Score of a likelihood ratio on the part that chooses that is proof where noise is white.
+const LIKELIER: f64 = 4.0;
 /// Score of whiteness below which a residual has no memory that could pass for a cause.
 const WHITE: f64 = 3.0;
 /// Trials whose steps are checked, and those that are judged again with finer ones.
@@ -39,6 +41,19 @@ impl Search<'_, '_> {
         self.accepts(before, &trial.y, trial.weak) || trial.sure && confirmed()
     }
 
+    /// Whether a trial that is no proof yet may lead on: of several causes that are still missing
+    /// one alone need not help much. What comes of it is proof or taken back.
+    pub(super) fn may_lead_on(&self, before: &[Vec<f64>], trial: &Trial) -> bool {
+        !self.is_white(before)
+            && self.score(before, &trial.y) > 0.0
+            && self.problem.likelier(before, &trial.y) >= LIKELIER
+    }
+
+    /// Whether it has led to where nothing but noise is left.
+    pub(super) fn has_led_on(&self, before: &[Vec<f64>], model: &Model) -> bool {
+        self.present(model).is_some_and(|y| self.is_noise(&y) && self.accepts(before, &y, false))
+    }
+
     /// Whether the later of two causes makes the earlier one, a compromise, superfluous.
     pub(super) fn second_suffices(&self, both: &Trial) -> bool {
         let second = self.fitted(both.model.without(both.model.known()));
@@ -57,7 +72,10 @@ impl Search<'_, '_> {
     pub(super) fn accepts(&self, a: &[Vec<f64>], b: &[Vec<f64>], weak: bool) -> bool {
         let score = self.score(a, b) - f64::from(u8::from(weak));
         let ((fit_a, held_a), (fit_b, held_b)) = (self.mean_squares(a), self.mean_squares(b));
-        score >= self.bar(b) || score > 1.0 && held_b < STRONG * held_a && fit_b < STRONG * fit_a
+        let strong = score > 1.0 && held_b < STRONG * held_a && fit_b < STRONG * fit_a;
+        // blocks of a record are few; where noise is white every sample counts
+        let likelier = || self.problem.likelier(a, b) >= LIKELIER + f64::from(u8::from(weak));
+        score >= self.bar(b) || strong || score > 0.0 && likelier() && self.is_white(b)
     }
 
     /// Whether two causes together are as strong an improvement as two strong ones would be: what

@@ -3,6 +3,9 @@
 use std::sync::Arc;
 
 use super::candidate::Candidate;
+use super::library::library;
+use super::problem::Model;
+use super::search::{Search, Slot};
 
 /// Samples at a limit, at least, to call it one.
 const COUNT: usize = 8;
@@ -13,7 +16,7 @@ const RUN: usize = 4;
 const TIMES: usize = 5;
 
 /// The lowest and the highest value that a series cannot leave; infinite where there is none.
-pub(super) fn limits(y: &[f64], known: &[bool]) -> (f64, f64) {
+fn limits(y: &[f64], known: &[bool]) -> (f64, f64) {
     let values: Vec<f64> = y.iter().zip(known).filter(|(_, k)| **k).map(|(y, _)| *y).collect();
     let negative: Vec<f64> = values.iter().map(|v| -v).collect();
     (upper(&negative).map_or(f64::NEG_INFINITY, |v| -v), upper(&values).unwrap_or(f64::INFINITY))
@@ -39,7 +42,7 @@ fn upper(values: &[f64]) -> Option<f64> {
 }
 
 /// The limits of an output as a cause that is known before any search; `None` without any.
-pub(super) fn known_limits(
+fn known_limits(
     candidates: &[Arc<Candidate>],
     output: &str,
     (low, high): (f64, f64),
@@ -55,6 +58,27 @@ pub(super) fn known_limits(
     cause.refine = vec![];
     cause.starts = vec![vec![low, high]];
     Some((Arc::new(cause), vec![low, high]))
+}
+
+impl Search<'_, '_> {
+    /// Puts what the instruments cannot show into a model before anything is searched.
+    pub(super) fn limited(&self, start: Model, slots: &mut Vec<Slot>) -> Model {
+        let mut model = start;
+        let outputs = self.problem.base.signals.outputs.clone();
+        for (o, signal) in outputs.iter().enumerate().filter(|_| self.most > 0) {
+            let at = limits(&self.problem.y[o], &self.problem.known[o]);
+            if !(at.0.is_finite() || at.1.is_finite()) {
+                continue;
+            }
+            let candidates = library(self.problem, self.nominal, &model, vec![], self.allowed);
+            if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
+                model = model.with(&cause, knobs);
+                let set = vec![(cause, 1.0)];
+                slots.push(Slot { set, others: vec![], score: 0.0 });
+            }
+        }
+        model
+    }
 }
 
 #[cfg(test)]

@@ -5,7 +5,6 @@ use std::sync::Arc;
 use super::candidate::Candidate;
 use super::dependence::dependence;
 use super::library::{Allowed, library};
-use super::limits::{known_limits, limits};
 use super::nominal::Nominal;
 use super::nuisance::{Nuisance, Refit, refit};
 use super::pairs::{shortlist, stayed};
@@ -130,23 +129,13 @@ impl<'a, 'b> Search<'a, 'b> {
         }
     }
 
-    /// Puts what the instruments cannot show into a model before anything is searched.
-    fn limited(&self, start: Model, slots: &mut Vec<Slot>) -> Model {
-        let mut model = start;
-        let outputs = self.problem.base.signals.outputs.clone();
-        for (o, signal) in outputs.iter().enumerate().filter(|_| self.most > 0) {
-            let at = limits(&self.problem.y[o], &self.problem.known[o]);
-            if !(at.0.is_finite() || at.1.is_finite()) {
-                continue;
-            }
-            let candidates = library(self.problem, self.nominal, &model, vec![], self.allowed);
-            if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
-                model = model.with(&cause, knobs);
-                let set = vec![(cause, 1.0)];
-                slots.push(Slot { set, others: vec![], score: 0.0 });
-            }
+    /// Goes on from a model: what is a spike, what steps cost, and each output's scale.
+    fn stand_on(&mut self, model: &Model) {
+        self.flag(model);
+        self.problem.recorrect(model);
+        if let Some(y) = self.present(model) {
+            self.problem.rescale(&y);
         }
-        model
     }
 
     /// Runs the search from a model to the end.
@@ -156,10 +145,8 @@ impl<'a, 'b> Search<'a, 'b> {
         let mut slots: Vec<Slot> = vec![];
         let start = self.limited(start, &mut slots);
         let mut model = self.fitted(start);
-        self.flag(&model);
-        self.problem.recorrect(&model);
+        self.stand_on(&model);
         let y0 = self.present(&model)?;
-        self.problem.rescale(&y0);
         let dependence = dependence(self.problem, self.nominal, &y0);
         if dependence < 2.0 {
             self.accept = ACCEPT_INDEPENDENT;
@@ -169,6 +156,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let mut only = None;
         let mut full = true;
         let mut given_up = false;
+        let mut doubted = None;
         for number in 0..self.most.max(1) {
             let (at, step) = (number as f64 / (self.most + 1) as f64, 1.0 / (self.most + 1) as f64);
             self.tell(
@@ -251,8 +239,11 @@ impl<'a, 'b> Search<'a, 'b> {
                 break;
             };
             if !self.accepts_trial(&before, best) {
-                full = false;
-                break;
+                if number == 0 || number + 1 == self.most || !self.may_lead_on(&before, best) {
+                    full = false;
+                    break;
+                }
+                doubted.get_or_insert_with(|| (model.clone(), slots.clone(), before.clone()));
             }
             let held = self.problem.mean_square(&before, Part::Choose);
             let score = self.score(&before, &best.y);
@@ -268,17 +259,19 @@ impl<'a, 'b> Search<'a, 'b> {
             self.tell(at + 0.8 * step, "checking what was named");
             self.prune(&mut model, &mut slots, 1);
             self.swap(&mut model, &mut slots);
-            self.prune(&mut model, &mut slots, 0);
-            self.flag(&model);
-            self.problem.recorrect(&model);
-            if let Some(y) = self.present(&model) {
-                self.problem.rescale(&y);
-            }
+            self.prune(&mut model, &mut slots, usize::from(doubted.is_some()));
+            self.stand_on(&model);
+        }
+        if let Some((sure, its_slots, y)) = doubted
+            && !self.has_led_on(&y, &model)
+        {
+            (model, slots, full) = (sure, its_slots, false);
+            self.stand_on(&model);
         }
         match only {
             // the first stage's trials are still those of the only cause
             Some((trials, held)) if slots.len() == 1 && model.added.len() == 1 => {
-                let (headline, slot) = self.choose(&trials, held);
+                let (headline, slot) = self.choose_last(&trials, held);
                 model = trials[headline].model.clone();
                 slots = vec![Slot { score: slots[0].score, ..slot }];
             }

@@ -11,6 +11,8 @@ use super::stage::{REFITTED, Trial, stage, trial};
 pub(super) const AS_GOOD: f64 = 2.0;
 /// Score on all data that tells two causes apart which the part that chooses does not.
 const TOLD_APART: f64 = 3.0;
+/// Logarithm of the odds at which one of two causes is ruled out by the other.
+const RULED_OUT: f64 = 8.0;
 /// A cause of the same set gives back less than this share of what the best removes.
 const SHARE_OF_SET: f64 = 0.10;
 /// Members of a named set at most.
@@ -38,18 +40,38 @@ impl Search<'_, '_> {
 
     /// The headline among what is as good as the best, and the set.
     pub(super) fn choose(&self, trials: &[Trial], before: f64) -> (usize, Slot) {
-        let best = &trials[0];
-        let gain = |t: &Trial| (before - t.held) / (before - best.held).max(1e-300);
+        self.choose_from(trials, before, self.set(trials, before))
+    }
+
+    /// The same where no further cause is to come, so that one of the set may be right and may
+    /// rule out others.
+    pub(super) fn choose_last(&self, trials: &[Trial], before: f64) -> (usize, Slot) {
+        let (mut set, white) = (self.set(trials, before), self.is_white(&trials[0].y));
+        let all = set.clone();
+        let beats =
+            |a: usize, b: usize| self.problem.odds(&trials[a].y, &trials[b].y, white) > RULED_OUT;
+        set.retain(|&a| !all.iter().any(|&b| beats(a, b)));
+        self.choose_from(trials, before, if set.is_empty() { all } else { set })
+    }
+
+    /// What is as good as the best.
+    fn set(&self, trials: &[Trial], before: f64) -> Vec<usize> {
         let mut set: Vec<usize> = (0..trials.len())
-            .filter(|&i| i == 0 || self.as_good(&trials[i], best, before))
+            .filter(|&i| i == 0 || self.as_good(&trials[i], &trials[0], before))
             .collect();
         set.sort_by(|&i, &j| {
             let (a, b) = (&trials[i], &trials[j]);
             a.cause.order().cmp(&b.cause.order()).then(a.held.total_cmp(&b.held))
         });
+        set
+    }
+
+    fn choose_from(&self, trials: &[Trial], before: f64, set: Vec<usize>) -> (usize, Slot) {
+        let best = &trials[0];
+        let gain = |t: &Trial| (before - t.held) / (before - best.held).max(1e-300);
         // one entry per name; the best stays in even if the set is cut
         let mut named: Vec<usize> = vec![];
-        for &i in &set {
+        for i in set {
             if !named.iter().any(|&j| trials[j].cause.same_cause(&trials[i].cause)) {
                 named.push(i);
             }
@@ -104,7 +126,7 @@ impl Search<'_, '_> {
             let bare = self.present(&without);
             match bare.map(|y| self.problem.mean_square(&y, Part::Choose)) {
                 Some(before) if trials.len() > 1 => {
-                    let (headline, mut slot) = self.choose(&trials, before);
+                    let (headline, mut slot) = self.choose_last(&trials, before);
                     slot.others.extend(others);
                     slots.push(Slot { score, ..slot });
                     *model = trials.swap_remove(headline).model;

@@ -19,6 +19,8 @@ use crate::watch::Watch;
 const ENOUGH: f64 = 1.0;
 /// Causes from which on the free track is searched from its own beginning.
 const MANY: usize = 3;
+/// Moved parameters, at most, that may stand in for a cause.
+const FEW: usize = 2;
 /// Share of the mean square left at which wrong parameters are no suspects any more.
 const SOLVED: f64 = 0.01;
 /// Score from which on a residual is not white.
@@ -58,7 +60,10 @@ impl<'a, 'b> Tracks<'a, 'b> {
             let on_free = self.search(free.clone(), moved, (0.2, 0.95), None);
             let on_free = on_free.and_then(|f| self.finish(Track::ParametersFree, f, free));
             let is_enough = |of: &Finished| of.dependence < DEPENDS && !of.found.full;
-            let enough = self.watch.stopped() || on_free.as_ref().is_some_and(is_enough);
+            // a few that moved beside a cause may stand in for a second one
+            let few = |of: &Finished| !of.found_nothing() && of.moved.len() <= FEW;
+            let alone = |of: &Finished| is_enough(of) && !few(of);
+            let enough = self.watch.stopped() || on_free.as_ref().is_some_and(alone);
             if !enough || on_free.is_none() {
                 found = self.search(held.clone(), start, (0.6, 0.95), None)?;
             }

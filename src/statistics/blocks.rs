@@ -140,39 +140,49 @@ pub(crate) fn corrected_score(count: usize) -> f64 {
 ///
 /// `ff` holds f^2 and `fr` holds f r, sample by sample.
 pub(crate) fn wald(ff: &[f64], fr: &[f64]) -> f64 {
-    weight_score(ff, fr, 0.0)
+    weight_score(ff, fr, 0.0, None)
 }
 
 /// Score that model b is better than a, from the weight g of b in the mixture a + g (b - a):
 /// g = 1 if b is right, 0 if a is, 1/2 if both err equally. With f = y_b - y_a and
 /// r = y - y_a, `ff` and `fr` as in [`wald`].
 pub(crate) fn mixture(ff: &[f64], fr: &[f64]) -> f64 {
-    weight_score(ff, fr, 0.5)
+    weight_score(ff, fr, 0.5, None)
 }
 
-/// (g - reference) over its block-robust standard error, as a normal score.
-fn weight_score(ff: &[f64], fr: &[f64], reference: f64) -> f64 {
-    robust(ff, fr)
+/// How much likelier the weight of b in the mixture is if b is right than if a is, as a natural
+/// logarithm: of one of the two, Cox's question (1961), where [`mixture`] asks which one is nearer
+/// to a truth that may be neither. Where what they leave is `white`, every sample is a block.
+pub(crate) fn odds(ff: &[f64], fr: &[f64], white: bool) -> f64 {
+    let count = white.then_some(ff.len());
+    let score = |reference| weight_score(ff, fr, reference, count);
+    0.5 * (score(0.0).powi(2) - score(1.0).powi(2))
+}
+
+/// (g - reference) over its block-robust standard error, as a normal score; of as many blocks as
+/// the errors' memory allows, or as are given.
+fn weight_score(ff: &[f64], fr: &[f64], reference: f64, count: Option<usize>) -> f64 {
+    robust(ff, fr, count)
         .map_or(0.0, |(weight, error, freedom)| normal_score((weight - reference) / error, freedom))
 }
 
 /// The weight g of b in the mixture a + g (b - a), see [`mixture`], and its block-robust
 /// standard error; `None` where nothing tells them apart.
 pub(crate) fn weight(ff: &[f64], fr: &[f64]) -> Option<(f64, f64)> {
-    robust(ff, fr).map(|(weight, error, _)| (weight, error))
+    robust(ff, fr, None).map(|(weight, error, _)| (weight, error))
 }
 
 /// A weight, its standard error and the degrees of freedom of that. Where f lives in a few
 /// blocks only, these few are all that the error is known from: one block that the weight was
 /// fitted to says nothing about it.
-fn robust(ff: &[f64], fr: &[f64]) -> Option<(f64, f64, f64)> {
+fn robust(ff: &[f64], fr: &[f64], count: Option<usize>) -> Option<(f64, f64, f64)> {
     let total: f64 = ff.iter().sum();
     if !(total > 0.0) {
         return None;
     }
     let weight = fr.iter().sum::<f64>() / total;
     let left: Vec<f64> = ff.iter().zip(fr).map(|(ff, fr)| fr - weight * ff).collect();
-    let count = blocks(&left);
+    let count = count.unwrap_or_else(|| blocks(&left));
     let sums = block_sums(&left, count);
     let in_blocks = block_sums(ff, count);
     let largest = in_blocks.iter().copied().fold(0.0, f64::max);
@@ -248,6 +258,10 @@ mod tests {
         let ff: Vec<f64> = f.iter().map(|f| f * f).collect();
         let fr: Vec<f64> = f.iter().zip(&e).map(|(f, e)| f * (f + e)).collect();
         assert!(mixture(&ff, &fr) > 8.0);
+        assert!(odds(&ff, &fr, false) > 100.0 && odds(&ff, &fr, true) > 100.0);
+        // halfway between them neither is likelier
+        let half: Vec<f64> = f.iter().zip(&e).map(|(f, e)| f * (f / 2.0 + 0.05 * e)).collect();
+        assert!(odds(&ff, &half, true).abs() < 0.1 * odds(&ff, &fr, true));
         let back: Vec<f64> = f.iter().zip(&e).map(|(f, e)| -f * e).collect();
         assert!(mixture(&ff, &back) < -8.0);
     }

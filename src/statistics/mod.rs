@@ -11,7 +11,7 @@ pub(crate) use averaged::Averaged;
 pub(crate) use basis::{add_to_basis, project};
 pub(crate) use blocks::{
     autocorrelation, block_sums, blocks, corrected_score, deviation, dot, mean, median, mixture,
-    normal_tail, rms, spread, wald, weight, whiteness,
+    normal_tail, odds, rms, spread, wald, weight, whiteness,
 };
 pub(crate) use lines::lines;
 pub(crate) use sandwich::covariance;

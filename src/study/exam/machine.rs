@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Case, Machine};
 use crate::data::{Random, Record, noise};
 use crate::effect::{Mechanism, Role};
-use crate::evaluate::{Init, Simulation};
+use crate::evaluate::Run;
 use crate::model::with_parameters;
 use crate::study::StudyError;
 use crate::study::generate::{deviation, rms, seed_of};
@@ -111,9 +111,12 @@ impl Machine {
 
     /// What a system makes of an input; `None` if it diverges.
     fn outputs(&self, of: &System, driven: &Record) -> Result<Option<Vec<Vec<f64>>>, StudyError> {
-        let run = Simulation::of(of, driven, Init::Samples(0))?;
-        let cut = |(_, y): (String, Vec<f64>)| y[self.transient..].to_vec();
-        Ok(run.diverged_at.is_none().then(|| run.outputs.into_iter().map(cut).collect()))
+        let mut run = Run::new(of, driven)?;
+        // the record begins after the transient, and so does what changes with its time
+        run.drive.origins.fill(self.transient);
+        let track = run.track(run.starts(0));
+        let cut = |y: Vec<f64>| y[self.transient..].to_vec();
+        Ok(track.diverged_at.is_none().then(|| track.y.into_iter().map(cut).collect()))
     }
 
     fn measured(
