@@ -82,6 +82,9 @@ pub struct Record {
     pub outputs: Vec<Signal>,
     /// The stretches of samples with every input present.
     pub segments: Vec<Range<usize>>,
+    /// Samples of the record that it is a part of that lie before it: what changes with time
+    /// goes on.
+    pub(crate) before: usize,
 }
 
 impl Record {
@@ -97,6 +100,7 @@ impl Record {
             inputs: Vec::new(),
             outputs: Vec::new(),
             segments: Vec::new(),
+            before: 0,
         }
     }
 

@@ -35,7 +35,7 @@ pub(crate) fn windows(records: &[Record]) -> Option<Vec<Record>> {
         let length = (MOST as f64 * n as f64 / total as f64) as usize / WINDOWS;
         for w in 0..WINDOWS {
             let start = w * (n - length) / (WINDOWS - 1);
-            windows.push(record.slice(start..start + length));
+            windows.push(record.part(start..start + length));
         }
     }
     Some(windows)
@@ -146,4 +146,41 @@ impl<'a> Prepared<'a> {
 
 fn diverges(source: &str) -> EvaluateError {
     EvaluateError::Diverges { record: source.into(), sample: 0, time: 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::file::{Format, parse};
+
+    #[test]
+    fn time_goes_on_in_the_windows_of_a_long_record() {
+        let text = r#"
+sampling_time = 0.1
+[model.equations]
+inputs = [{ name = "u" }]
+states = [{ name = "x", derivative = "c*u - x" }]
+outputs = [{ name = "y", value = "x" }]
+parameters = [{ name = "c", value = 1.0 }]
+[[effects]]
+into = "c"
+of = "time"
+effect.drift = { rate = 0.001 }
+"#;
+        let system = parse(text, "growing.toml", Format::Toml).unwrap();
+        let u: Vec<f64> = (0..15_000).map(|k| (0.1 * f64::from(k)).sin()).collect();
+        let record = Record::new(0.1).input("u", u).unwrap();
+        let free = |record: &Record| {
+            let run = Run::new(&system, record).unwrap();
+            run.track(run.starts(0)).y.swap_remove(0)
+        };
+        let (whole, windows) = (free(&record), windows(std::slice::from_ref(&record)).unwrap());
+        let last = free(windows.last().unwrap());
+        // the start is forgotten within 300 samples, thirty time constants
+        let end = |y: &[f64]| y[y.len() - 1000..].to_vec();
+        for (a, b) in end(&whole).iter().zip(end(&last)) {
+            assert!((a - b).abs() < 1e-9, "{a} is not {b}");
+        }
+        assert!(end(&whole).iter().any(|y| y.abs() > 1.0), "c has more than doubled");
+    }
 }

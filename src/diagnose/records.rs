@@ -97,7 +97,7 @@ pub(crate) fn join(signals: &Signals, records: &[Record]) -> Result<Joined, Diag
         }
         for segment in &own.segments {
             joined.drive.segments.push(segment.start + offset..segment.end + offset);
-            joined.drive.origins.push(offset);
+            joined.drive.origins.push(offset as i64 - record.before as i64);
         }
         joined.names.push(record.name(joined.spans.len()));
         joined.spans.push(offset..offset + record.len());

@@ -57,7 +57,7 @@ impl Run<'_> {
 
     /// The initial state of a stretch, fitted to more and more of it: all at once, the cost has
     /// many minima where runs part.
-    fn patient_start(&self, stretch: std::ops::Range<usize>, origin: usize) -> Vec<f64> {
+    fn patient_start(&self, stretch: std::ops::Range<usize>, origin: i64) -> Vec<f64> {
         let mut start = self.plan.signals.initial();
         let mut count = SHORTEST;
         loop {
@@ -87,7 +87,7 @@ impl Run<'_> {
         (segment.start..=segment.end - reach)
             .step_by(step)
             .map(|from| {
-                let own = self.patient_start(from..from + length, segment.start);
+                let own = self.patient_start(from..from + length, segment.start as i64);
                 self.growth(from..from + reach, &own)
             })
             .collect()
@@ -120,7 +120,7 @@ impl Run<'_> {
             for (&from, start) in places.iter().zip(&mut starts) {
                 let stretch = from..from + length;
                 let guess = std::mem::take(start);
-                *start = self.start_from(stretch.clone(), segment.start, length, guess);
+                *start = self.start_from(stretch.clone(), segment.start as i64, length, guess);
                 ends.extend(self.growth(stretch, start).last());
             }
             let grown = quantile(ends, 0.5)?;
@@ -149,7 +149,7 @@ impl Run<'_> {
     /// spread over it, are kept.
     pub fn cut(&mut self, length: usize, most: usize) {
         let whole = self.drive.segments.iter().zip(&self.drive.origins);
-        let all: Vec<(std::ops::Range<usize>, usize)> = whole
+        let all: Vec<(std::ops::Range<usize>, i64)> = whole
             .flat_map(|(segment, &origin)| {
                 let starts = segment.clone().step_by(length.max(1));
                 starts.map(move |from| (from..(from + length).min(segment.end), origin))

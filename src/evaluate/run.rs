@@ -29,7 +29,12 @@ pub(crate) fn drive(signals: &Signals, record: &Record) -> Result<Drive, Evaluat
         })?;
         inputs.push(found.values.clone());
     }
-    Ok(Drive { inputs, segments: record.segments.clone(), origins: vec![0; record.segments.len()] })
+    let origin = -(record.before as i64);
+    Ok(Drive {
+        inputs,
+        segments: record.segments.clone(),
+        origins: vec![origin; record.segments.len()],
+    })
 }
 
 /// The measured outputs of a record in the order of a model; `None` where not measured.
@@ -131,7 +136,7 @@ impl<'a> Run<'a> {
         let drive = Drive {
             inputs: self.drive.inputs.iter().map(|u| u[..end].to_vec()).collect(),
             segments: std::iter::once(first.start..end).collect(),
-            origins: vec![0],
+            origins: self.drive.origins[..1].to_vec(),
         };
         let mut lanes = vec![self.lane(vec![initial.clone()])];
         for i in 0..n {
@@ -169,7 +174,7 @@ impl<'a> Run<'a> {
             .collect()
     }
 
-    fn start_of(&self, segment: std::ops::Range<usize>, origin: usize, count: usize) -> Vec<f64> {
+    fn start_of(&self, segment: std::ops::Range<usize>, origin: i64, count: usize) -> Vec<f64> {
         self.start_from(segment, origin, count, self.plan.signals.initial())
     }
 
@@ -177,7 +182,7 @@ impl<'a> Run<'a> {
     pub(super) fn start_from(
         &self,
         segment: std::ops::Range<usize>,
-        origin: usize,
+        origin: i64,
         count: usize,
         guess: Vec<f64>,
     ) -> Vec<f64> {

@@ -97,7 +97,7 @@ struct Run<'a, R> {
     first_ever: bool,
     first: bool,
     /// Sample at which time is 0.
-    origin: usize,
+    origin: i64,
     time: f64,
 }
 
@@ -167,7 +167,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         let base = self.base;
         let h = base.step();
         for j in 0..base.substeps {
-            self.time = (k - self.origin.min(k)) as f64 * base.sampling_time + j as f64 * h;
+            self.time = (k as i64 - self.origin).max(0) as f64 * base.sampling_time + j as f64 * h;
             self.drift(self.time);
             self.drive(drive, k, end, j);
             for group in &mut self.groups {

@@ -9,8 +9,8 @@ pub(crate) struct Drive {
     pub inputs: Vec<Vec<f64>>,
     /// Runs of samples that are simulated without a break.
     pub segments: Vec<Range<usize>>,
-    /// Sample at which time is 0, for each segment.
-    pub origins: Vec<usize>,
+    /// Sample at which time is 0, for each segment; negative where time was 0 before the first.
+    pub origins: Vec<i64>,
 }
 
 impl Drive {
