@@ -141,7 +141,7 @@ fn a_linear_baseline_is_told_its_nonlinear_terms() {
         name: "linear msd",
         model: r#"
 sampling_time = 0.1
-integrator = { method = "rk4", substeps = 10 }
+integrator = { method = "rk4", substeps = 5 }
 [model.linearised.of.mass_spring_damper]
 masses = [0.5, 0.4]
 stiffness = [100.0, 100.0]
