@@ -70,11 +70,12 @@ impl Search<'_, '_> {
 
     /// Whether going from `a` to `b` is an improvement worth a cause.
     pub(super) fn accepts(&self, a: &[Vec<f64>], b: &[Vec<f64>], weak: bool) -> bool {
-        let score = self.score(a, b) - f64::from(u8::from(weak));
+        let doubt = f64::from(u8::from(weak));
+        let score = self.score(a, b) - doubt;
         let ((fit_a, held_a), (fit_b, held_b)) = (self.mean_squares(a), self.mean_squares(b));
         let strong = score > 1.0 && held_b < STRONG * held_a && fit_b < STRONG * fit_a;
         // blocks of a record are few; where noise is white every sample counts
-        let likelier = || self.problem.likelier(a, b) >= LIKELIER + f64::from(u8::from(weak));
+        let likelier = || self.problem.likelier(a, b) >= LIKELIER + doubt;
         score >= self.bar(b) || strong || score > 0.0 && likelier() && self.is_white(b)
     }
 

@@ -169,11 +169,10 @@ impl<'a> Diagnosis<'a> {
 
     /// Strikes out what instruments made up, and turns a column of the wrong sign.
     fn mended(&self, records: &[Record], test: Option<&Record>) -> Result<Mended, EvaluateError> {
-        let (mut all, mut faults, mut before) = (vec![], vec![], 0);
-        for record in records {
+        let (mut all, mut faults) = (vec![], vec![]);
+        for (record, first) in records.iter().zip(firsts(records)) {
             let run = Simulation::of(self.system, record, Init::Forgotten)?;
-            let (mended, found) = strike(record, &run.outputs, before);
-            before += record.len();
+            let (mended, found) = strike(record, &run.outputs, first);
             all.push(mended);
             faults.extend(found);
         }

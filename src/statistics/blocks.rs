@@ -140,29 +140,29 @@ pub(crate) fn corrected_score(count: usize) -> f64 {
 ///
 /// `ff` holds f^2 and `fr` holds f r, sample by sample.
 pub(crate) fn wald(ff: &[f64], fr: &[f64]) -> f64 {
-    weight_score(ff, fr, 0.0, None)
+    weight_score(ff, fr, 0.0)
 }
 
 /// Score that model b is better than a, from the weight g of b in the mixture a + g (b - a):
 /// g = 1 if b is right, 0 if a is, 1/2 if both err equally. With f = y_b - y_a and
 /// r = y - y_a, `ff` and `fr` as in [`wald`].
 pub(crate) fn mixture(ff: &[f64], fr: &[f64]) -> f64 {
-    weight_score(ff, fr, 0.5, None)
+    weight_score(ff, fr, 0.5)
 }
 
 /// How much likelier the weight of b in the mixture is if b is right than if a is, as a natural
 /// logarithm: of one of the two, Cox's question (1961), where [`mixture`] asks which one is nearer
 /// to a truth that may be neither. Where what they leave is `white`, every sample is a block.
 pub(crate) fn odds(ff: &[f64], fr: &[f64], white: bool) -> f64 {
-    let count = white.then_some(ff.len());
-    let score = |reference| weight_score(ff, fr, reference, count);
-    0.5 * (score(0.0).powi(2) - score(1.0).powi(2))
+    robust(ff, fr, white.then_some(ff.len())).map_or(0.0, |(weight, error, freedom)| {
+        let score = |reference: f64| normal_score((weight - reference) / error, freedom);
+        0.5 * (score(0.0).powi(2) - score(1.0).powi(2))
+    })
 }
 
-/// (g - reference) over its block-robust standard error, as a normal score; of as many blocks as
-/// the errors' memory allows, or as are given.
-fn weight_score(ff: &[f64], fr: &[f64], reference: f64, count: Option<usize>) -> f64 {
-    robust(ff, fr, count)
+/// (g - reference) over its block-robust standard error, as a normal score.
+fn weight_score(ff: &[f64], fr: &[f64], reference: f64) -> f64 {
+    robust(ff, fr, None)
         .map_or(0.0, |(weight, error, freedom)| normal_score((weight - reference) / error, freedom))
 }
 
@@ -174,7 +174,8 @@ pub(crate) fn weight(ff: &[f64], fr: &[f64]) -> Option<(f64, f64)> {
 
 /// A weight, its standard error and the degrees of freedom of that. Where f lives in a few
 /// blocks only, these few are all that the error is known from: one block that the weight was
-/// fitted to says nothing about it.
+/// fitted to says nothing about it. Of as many blocks as the errors' memory allows, or as are
+/// given.
 fn robust(ff: &[f64], fr: &[f64], count: Option<usize>) -> Option<(f64, f64, f64)> {
     let total: f64 = ff.iter().sum();
     if !(total > 0.0) {
