@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::finding::Gain;
-use super::floor::{Floor, predicted, repeated};
+use super::floor::{self, Floor, predicted, predicted_by, repeated};
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Metrics, Run};
 use crate::statistics::{block_sums, blocks, spread};
@@ -67,8 +67,15 @@ impl TestData {
         Ok(Scored { errors, metrics })
     }
 
-    /// Noise of every output, from these records and the baseline's errors on them.
-    pub fn floors(&self, system: &System, before: &Scored) -> Vec<Option<Floor>> {
+    /// Noise of every output, from these records and the baseline's errors on them and on the
+    /// data used, `learnt` by output.
+    pub fn floors(
+        &self,
+        system: &System,
+        before: &Scored,
+        learnt: &[Vec<f64>],
+        drives: &[&[f64]],
+    ) -> Vec<Option<Floor>> {
         let signals = system.signals();
         (0..signals.outputs.len())
             .map(|o| {
@@ -88,7 +95,11 @@ impl TestData {
                 let n = before.errors[o].len();
                 let lent: Vec<&[f64]> =
                     lent.into_iter().map(|u| &u[u.len().saturating_sub(n)..]).collect();
-                predicted(&before.errors[o], &lent)
+                let scored = floor::Left { r: &before.errors[o], drives: &lent };
+                let taught = floor::Left { r: &learnt[o], drives };
+                // either is noise at most
+                let both = [predicted_by(taught, scored), predicted(scored)];
+                both.into_iter().flatten().min_by(|a, b| a.std.total_cmp(&b.std))
             })
             .collect()
     }
@@ -146,6 +157,8 @@ pub(crate) fn gain(before: &Scored, after: &Scored, floors: &[Option<Floor>]) ->
     for &o in &outputs {
         let unit = mean_square(&before.errors[o]);
         let floor = floors[o].map_or(0.0, |f| f.std * f.std).min(unit);
+        let doubt = floors[o].map_or(0.0, |f| f.doubt);
+        scatter += (error_removed * doubt * floor / unit).powi(2);
         let kept: Vec<(f64, f64)> = before.errors[o]
             .iter()
             .zip(&after.errors[o])

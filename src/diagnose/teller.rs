@@ -11,7 +11,7 @@ use super::finding::{
     FalseDiscovery, Finding, Left, NoiseFloor, OtherTrack, Ranked, Scores, Series, Track, Verdict,
 };
 use super::finished::Finished;
-use super::floor::{predicted, repeated};
+use super::floor::{self, predicted, repeated};
 use super::nominal::Nominal;
 use super::nuisance::{Refit, refit};
 use super::problem::{Grain, Model, Part, Problem};
@@ -50,9 +50,10 @@ impl Teller<'_, '_> {
         let extended = self.extend(&chosen.fitted.model)?;
         let before = test.score(system)?;
         let after = test.score(&extended)?;
-        let floors = test.floors(system, &before);
         let y_before = self.problem.simulate(start, Grain::Fine);
         let y_before = y_before.unwrap_or_else(|| chosen.y.clone());
+        let drives: Vec<&[f64]> = self.joined.drive.inputs.iter().map(Vec::as_slice).collect();
+        let floors = test.floors(system, &before, &self.off(&y_before), &drives);
         let mut causes = self.causes(chosen, test, &before, &after, &floors)?;
         causes.extend(self.moved(chosen, test, &before, &after, &floors)?);
         let false_discovery = false_discovery(&causes);
@@ -87,13 +88,10 @@ impl Teller<'_, '_> {
                 })
                 .collect::<BTreeMap<_, _>>()
         };
-        let noise_floor = self.noise_floor(&y_before, used);
+        let noise_floor = self.noise_floor(&y_before, &drives, used);
+        let off = self.off(&chosen.y);
         let left = Left {
-            whiteness: self.per_output(|o| {
-                let off: Vec<f64> =
-                    self.joined.measured[o].iter().zip(&chosen.y[o]).map(|(a, b)| a - b).collect();
-                whiteness(&self.problem.counted(o, &off, Part::All))
-            }),
+            whiteness: self.per_output(|o| whiteness(&self.problem.counted(o, &off[o], Part::All))),
             dependence: chosen.dependence,
         };
         let mut finding = Finding {
@@ -195,22 +193,27 @@ impl Teller<'_, '_> {
         }
     }
 
-    fn noise_floor(&self, before: &[Vec<f64>], used: &[Record]) -> BTreeMap<String, NoiseFloor> {
+    /// What a simulation leaves of every output.
+    fn off(&self, y: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let outputs = self.joined.measured.iter().zip(y);
+        outputs.map(|(measured, y)| measured.iter().zip(y).map(|(a, b)| a - b).collect()).collect()
+    }
+
+    fn noise_floor(
+        &self,
+        before: &[Vec<f64>],
+        drives: &[&[f64]],
+        used: &[Record],
+    ) -> BTreeMap<String, NoiseFloor> {
+        let off = self.off(before);
         let outputs = self.problem.base.signals.outputs.iter().enumerate();
         outputs
             .filter_map(|(o, signal)| {
                 let periods = used.first().filter(|_| used.len() == 1).and_then(Record::periods);
                 let from_periods = periods
                     .and_then(|p| repeated(&self.joined.measured[o], p.samples, p.samples / 10));
-                let from_prediction = || {
-                    let n = before[o].len();
-                    let r: Vec<f64> =
-                        (0..n).map(|k| self.joined.measured[o][k] - before[o][k]).collect();
-                    let drives: Vec<&[f64]> =
-                        self.joined.drive.inputs.iter().map(Vec::as_slice).collect();
-                    predicted(&r, &drives)
-                };
-                let floor = from_periods.or_else(from_prediction)?;
+                let floor =
+                    from_periods.or_else(|| predicted(floor::Left { r: &off[o], drives }))?;
                 let entry = NoiseFloor { std: floor.std, method: floor.method.into() };
                 Some((signal.name.clone(), entry))
             })

@@ -1,12 +1,18 @@
 //! The linearisation of another model at a point.
 
-use nalgebra::DMatrix;
+use std::sync::OnceLock;
+
 use serde::{Deserialize, Serialize};
 
 use super::lane_number::LaneNumber;
 use super::law::{Ask, Block, Call, Law, Matrices};
-use super::{Dual64, Fault, Signals, Sizes, StateSpaceModel};
-use crate::real::{F64x8, Real};
+use super::{Dual32, Dual64, Fault, Signals, Sizes, StateSpaceModel};
+use crate::real::{F64x8, Lanes, Real};
+use table::Place;
+
+mod table;
+#[cfg(test)]
+mod tests;
 
 /// Where a model is linearised.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -36,15 +42,16 @@ pub struct Linearised {
     pub of: Box<dyn StateSpaceModel>,
     /// The equilibrium, once found.
     #[serde(skip)]
-    found: std::sync::OnceLock<Option<(Vec<f64>, Vec<f64>)>>,
+    found: OnceLock<Option<(Vec<f64>, Vec<f64>)>>,
+    /// Where its numbers stand, once asked for.
+    #[serde(skip)]
+    place: OnceLock<Place>,
 }
-
-type D = Dual64;
 
 impl Linearised {
     /// The linearisation of a model at a point, or at the equilibrium nearest 0.
     pub fn new(of: Box<dyn StateSpaceModel>, at: Option<Point>) -> Self {
-        Self { at, of, found: std::sync::OnceLock::new() }
+        Self { at, of, found: OnceLock::new(), place: OnceLock::new() }
     }
 
     /// States and inputs where the model is linearised: the point given, else the
@@ -60,129 +67,80 @@ impl Linearised {
         self.found.get_or_init(|| super::probe::equilibrium(self.of.as_ref())).clone()
     }
 
-    /// The answer of the inner law at the point and its slope along (x - x*, u - u*, w).
-    fn along(&self, ask: Ask, block: &Block<'_, F64x8>, answer: &mut [F64x8]) {
-        let Some((x0, u0)) = self.point() else {
-            answer.fill(F64x8::constant(f64::NAN));
-            return;
-        };
-        let n = block.sizes;
-        let packs = block.packs;
-        let fixed = |values: &[F64x8]| values.iter().map(|&v| D::fixed(v)).collect::<Vec<_>>();
-        let moved = |values: &[F64x8], from: &[f64]| {
-            values
-                .iter()
-                .enumerate()
-                .map(|(i, &v)| {
-                    let from =
-                        F64x8::constant(from.get(i % from.len().max(1)).copied().unwrap_or(0.0));
-                    let mut dual = D::fixed(from);
-                    dual.slope[0] = v - from;
-                    dual
+    fn place(&self) -> Place {
+        *self.place.get_or_init(|| Place { inner: Sizes::of(&self.of.signals()) })
+    }
+
+    /// The linear law's numbers at each pack's parameters; not numbers where there is no point.
+    fn numbers(&self, theta: &[F64x8], packs: usize) -> Vec<F64x8> {
+        let place = self.place();
+        self.point().map_or_else(
+            || vec![F64x8::constant(f64::NAN); packs * place.count()],
+            |point| table::at(self.of.as_ref(), place, &point, (theta, packs), 0.0),
+        )
+    }
+
+    /// What the inner law derives, then the linear law's numbers, without the slopes of those.
+    fn derive<R: LaneNumber>(&self, block: &Block<'_, R>, out: &mut [R]) {
+        let (place, n, packs) = (self.place(), block.sizes, block.packs);
+        let own = place.inner.derived;
+        if own > 0 {
+            let mut derived = vec![R::constant(0.0); packs * own];
+            let block = Block { sizes: place.inner, ..*block };
+            self.of.answer(Ask::Derived, R::call(&block, &mut derived));
+            for (out, derived) in out.chunks_exact_mut(n.derived).zip(derived.chunks_exact(own)) {
+                out[..own].copy_from_slice(derived);
+            }
+        }
+        // the numbers are computed in double precision, eight lanes at a time
+        let each = R::LANES / 8;
+        let theta: Vec<F64x8> = (0..packs * each)
+            .flat_map(|part| {
+                block.theta[part / each * n.theta..][..n.theta].iter().map(move |value| {
+                    Lanes(std::array::from_fn(|lane| value.lane(part % each * 8 + lane)))
                 })
-                .collect::<Vec<_>>()
-        };
-        let nothing = vec![0.0; n.w];
-        let (x, u) = (moved(block.x, &x0), moved(block.u, &u0));
-        let (w, theta) = (moved(block.w, &nothing), fixed(block.theta));
-        let mut out = vec![D::constant(0.0); packs * n.answer(ask)];
-        let time = D::fixed(block.time);
-        let derived = fixed(block.derived);
-        let inner =
-            Block { sizes: n, packs, theta: &theta, derived: &derived, x: &x, u: &u, w: &w, time };
-        self.of.answer(ask, D::call(&inner, &mut out));
-        for (to, dual) in answer.iter_mut().zip(&out) {
-            *to = dual.value + dual.slope[0];
-        }
-    }
-
-    /// The same for kinds of number that cannot be nested in duals: with the matrices at
-    /// each lane's parameters. Slopes along parameters are not in them.
-    fn by_matrices<R: LaneNumber>(&self, ask: Ask, block: &Block<'_, R>, answer: &mut [R]) {
-        let n = block.sizes;
-        let width = n.answer(ask);
-        let mut known: Vec<(Vec<f64>, Option<Matrices>)> = vec![];
-        for pack in 0..block.packs {
-            let theta = &block.theta[pack * n.theta..][..n.theta];
-            let at = |lane: usize| theta.iter().map(|v| v.lane(lane)).collect::<Vec<f64>>();
-            // mostly all lanes share their parameters, with those of the pack before
-            let all: Vec<Vec<f64>> = (0..R::LANES).map(at).collect();
-            let lanes = if all.iter().all(|one| *one == all[0]) { 1 } else { R::LANES };
-            if known.len() != lanes || !known.iter().zip(&all).all(|((at, _), one)| at == one) {
-                let made = |one: &Vec<f64>| (one.clone(), Law::matrices(self, one));
-                known = all[..lanes].iter().map(made).collect();
-            }
-            let spread = |get: &dyn Fn(&Matrices) -> f64| {
-                let value = |lane: usize| known[lane].1.as_ref().map_or(f64::NAN, get);
-                let mut spread = R::constant(value(0));
-                (1..lanes).for_each(|lane| spread.set_lane(lane, value(lane)));
-                spread
-            };
-            let (x, u) = (&block.x[pack * n.x..][..n.x], &block.u[pack * n.u..][..n.u]);
-            let w = &block.w[pack * n.w..][..n.w];
-            type Part = fn(&Matrices) -> &DMatrix<f64>;
-            let parts: [(Part, &[R]); 3] = match ask {
-                Ask::Derivative => [(|m| &m.a, x), (|m| &m.b, u), (|m| &m.g, w)],
-                _ => [(|m| &m.c, x), (|m| &m.d, u), (|m| &m.d, &[])],
-            };
-            for i in 0..width {
-                let constant = |m: &Matrices| if ask == Ask::Derivative { m.f[i] } else { m.h[i] };
-                let mut sum = spread(&constant);
-                for (matrix, by) in parts {
-                    for (j, &value) in by.iter().enumerate() {
-                        sum += value * spread(&|m| matrix(m)[(i, j)]);
-                    }
+            })
+            .collect();
+        let numbers = self.numbers(&theta, packs * each);
+        for part in 0..packs * each {
+            let numbers = &numbers[part * place.count()..][..place.count()];
+            let out = &mut out[part / each * n.derived..][own..n.derived];
+            for (to, number) in out.iter_mut().zip(numbers) {
+                for lane in 0..8 {
+                    to.set_lane(part % each * 8 + lane, number.0[lane]);
                 }
-                answer[pack * width + i] = sum;
             }
         }
     }
 
-    /// Adds the slopes along parameters, from differences of fourth order.
-    fn along_parameters(&self, ask: Ask, block: &Block<'_, D>, answer: &mut [D]) {
-        let n = block.sizes;
-        let width = n.answer(ask);
-        let values = |list: &[D]| list.iter().map(|dual| dual.value).collect::<Vec<_>>();
-        let (theta, x, u, w) =
-            (values(block.theta), values(block.x), values(block.u), values(block.w));
-        let inner = Block {
-            sizes: n,
-            packs: block.packs,
-            theta: &theta,
-            derived: &[],
-            x: &x,
-            u: &u,
-            w: &w,
-            time: block.time.value,
-        };
+    /// Adds the slopes of the linear law's numbers along parameters, from differences of fourth
+    /// order.
+    fn slopes(&self, block: &Block<'_, Dual64>, out: &mut [Dual64]) {
+        let (n, own, packs) = (block.sizes, self.place().inner.derived, block.packs);
+        let theta: Vec<F64x8> = block.theta.iter().map(|dual| dual.value).collect();
         for i in 0..n.theta {
-            let own = || block.theta.iter().skip(i).step_by(n.theta);
-            if own().all(|dual| dual.slope.iter().all(|slope| slope.0 == [0.0; 8])) {
+            let each = || block.theta.iter().skip(i).step_by(n.theta);
+            if each().all(|dual| dual.slope.iter().all(|slope| slope.0 == [0.0; 8])) {
                 continue;
             }
-            let h = own().flat_map(|dual| dual.value.0).fold(0.0_f64, |m, v| m.max(v.abs()));
+            let h = each().flat_map(|dual| dual.value.0).fold(0.0_f64, |m, v| m.max(v.abs()));
             let h = if h > 0.0 { 1e-3 * h } else { 1e-3 };
-            let mut rate = vec![F64x8::constant(0.0); answer.len()];
-            for (step, weight) in [(h, 8.0), (-h, -8.0), (2.0 * h, -1.0), (-2.0 * h, 1.0)] {
-                let mut moved = theta.clone();
-                moved
-                    .iter_mut()
-                    .skip(i)
-                    .step_by(n.theta)
-                    .for_each(|value| *value += F64x8::constant(step));
-                let mut derived = vec![F64x8::constant(0.0); block.packs * n.derived];
-                let at = Block { theta: &moved, ..inner };
-                if n.derived > 0 {
-                    self.of.answer(Ask::Derived, F64x8::call(&at, &mut derived));
+            let moved =
+                [(h, 8.0), (-h, -8.0), (2.0 * h, -1.0), (-2.0 * h, 1.0)].map(|(step, weight)| {
+                    let mut moved = theta.clone();
+                    for value in moved.iter_mut().skip(i).step_by(n.theta) {
+                        *value += F64x8::constant(step);
+                    }
+                    (self.numbers(&moved, packs), weight / (12.0 * h))
+                });
+            let outs = out.chunks_exact_mut(n.derived).flat_map(|out| &mut out[own..]);
+            let count = n.derived - own;
+            for (at, to) in outs.enumerate() {
+                let mut rate = F64x8::constant(0.0);
+                for (numbers, weight) in &moved {
+                    rate += numbers[at] * *weight;
                 }
-                let mut out = rate.clone();
-                self.along(ask, &Block { derived: &derived, ..at }, &mut out);
-                for (rate, out) in rate.iter_mut().zip(out) {
-                    *rate += out * (weight / (12.0 * h));
-                }
-            }
-            for (at, (to, rate)) in answer.iter_mut().zip(rate).enumerate() {
-                let along = &block.theta[at / width * n.theta + i].slope;
+                let along = &block.theta[at / count * n.theta + i].slope;
                 for (to, &along) in to.slope.iter_mut().zip(along) {
                     *to += rate * along;
                 }
@@ -190,18 +148,37 @@ impl Linearised {
         }
     }
 
-    fn other<R: LaneNumber>(&self, ask: Ask, block: &Block<'_, R>, answer: &mut [R]) {
-        if matches!(ask, Ask::Coordinates | Ask::Derived) {
-            self.of.answer(ask, R::call(block, answer));
-        } else {
-            self.by_matrices(ask, block, answer);
+    fn ask<R: LaneNumber>(&self, ask: Ask, block: &Block<'_, R>, out: &mut [R]) {
+        let place = self.place();
+        match ask {
+            Ask::Derivative | Ask::Output => table::answer(place, ask, block, out),
+            Ask::Derived => self.derive(block, out),
+            Ask::Coordinates => {
+                let (own, all) = (place.inner.derived, block.sizes.derived);
+                let each = block.derived.chunks_exact(all.max(1));
+                let derived: Vec<R> = each.flat_map(|derived| &derived[..own]).copied().collect();
+                let inner = Block { sizes: place.inner, derived: &derived, ..*block };
+                self.of.answer(ask, R::call(&inner, out));
+            }
         }
+    }
+
+    /// Whether the law is another one at another time.
+    fn is_timed(&self) -> bool {
+        let Some(point) = self.point() else { return false };
+        let theta: Vec<_> = self.of.signals().theta().iter().map(|&v| F64x8::constant(v)).collect();
+        let at = |time| table::at(self.of.as_ref(), self.place(), &point, (&theta, 1), time);
+        let bits =
+            |numbers: Vec<F64x8>| numbers.iter().map(|v| v.0[0].to_bits()).collect::<Vec<_>>();
+        let now = bits(at(0.0));
+        [0.37, 11.3, 1234.5].into_iter().any(|time| bits(at(time)) != now)
     }
 }
 
 impl Law for Linearised {
     fn signals(&self) -> Signals {
-        self.of.signals()
+        let place = self.place();
+        self.of.signals().deriving(place.inner.derived + place.count())
     }
 
     fn faults(&self) -> Vec<Fault> {
@@ -228,28 +205,29 @@ impl Law for Linearised {
             let expected = "a point, as the model has no equilibrium near 0 with inputs 0";
             faults.push(Fault::new("at", "nothing", expected));
         }
+        if faults.is_empty() && self.is_timed() {
+            let expected = "a law without `time`: at one point it would be linear at one time only";
+            faults.push(Fault::new("of", "a law that changes with time", expected));
+        }
         faults
     }
 
     fn answer(&self, ask: Ask, call: Call<'_>) {
         match call {
-            Call::F64(block, out) if matches!(ask, Ask::Derivative | Ask::Output) => {
-                self.along(ask, block, out);
-            }
-            Call::F64(block, out) => self.of.answer(ask, Call::F64(block, out)),
-            Call::F32(block, out) => self.other(ask, block, out),
+            Call::F64(block, out) => self.ask(ask, block, out),
+            Call::F32(block, out) => self.ask(ask, block, out),
             Call::Dual64(block, out) => {
-                self.other(ask, block, out);
-                if matches!(ask, Ask::Derivative | Ask::Output) {
-                    self.along_parameters(ask, block, out);
+                self.ask(ask, block, out);
+                if ask == Ask::Derived {
+                    self.slopes(block, out);
                 }
             }
             Call::Dual32(block, out) => {
-                self.other(ask, block, out);
-                let moves = |dual: &super::Dual32| dual.slope.iter().any(|s| s.0 != [0.0; 16]);
+                self.ask(ask, block, out);
+                let moves = |dual: &Dual32| dual.slope.iter().any(|s| s.0 != [0.0; 16]);
                 // single precision has no digits for differences: never a silent zero
-                if matches!(ask, Ask::Derivative | Ask::Output) && block.theta.iter().any(moves) {
-                    out.fill(super::Dual32::constant(f64::NAN));
+                if ask == Ask::Derived && block.theta.iter().any(moves) {
+                    out.fill(Dual32::constant(f64::NAN));
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use super::{Fault, FaultKind};
 use crate::data::Record;
-use crate::diagnose::floor::predicted;
+use crate::diagnose::floor::{Left, predicted};
 use crate::evaluate::{EvaluateError, Init, Simulation};
 use crate::system::System;
 
@@ -48,7 +48,8 @@ fn noise(system: &System, records: &[Record]) -> Result<f64, EvaluateError> {
         let inputs: Vec<&[f64]> = record.inputs.iter().map(|u| &u.values[..]).collect();
         for (signal, (_, y)) in record.outputs.iter().zip(&run.outputs) {
             let left: Vec<f64> = signal.values.iter().zip(y).map(|(a, b)| a - b).collect();
-            let floor = predicted(&left, &inputs).map_or(0.0, |floor| floor.std);
+            let floor =
+                predicted(Left { r: &left, drives: &inputs }).map_or(0.0, |floor| floor.std);
             sum += (floor / signal.std().max(1e-300)).powi(2);
             count += 1.0;
         }

@@ -26,7 +26,7 @@ mod words;
 
 use super::error::DiagnoseError;
 use super::finding::NoiseFloor;
-use super::floor::{predicted, repeated};
+use super::floor::{Left, predicted, repeated};
 use super::library::Allowed;
 use super::prepared::{Prepared, windows};
 use super::problem::{Grain, Part};
@@ -117,7 +117,9 @@ fn noise(prepared: &Prepared<'_>, records: &[Record]) -> Option<Vec<NoiseFloor>>
         });
         let r: Vec<f64> = joined.measured[o].iter().zip(&y0[o]).map(|(y, s)| y - s).collect();
         let drives: Vec<&[f64]> = joined.drive.inputs.iter().map(Vec::as_slice).collect();
-        let floor = of_periods.or_else(|| predicted(&r, &drives)).filter(|f| f.std > 0.0);
+        let floor = of_periods
+            .or_else(|| predicted(Left { r: &r, drives: &drives }))
+            .filter(|f| f.std > 0.0);
         let (std, method) = match floor {
             Some(floor) => (floor.std, floor.method),
             None => {

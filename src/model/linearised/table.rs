@@ -1,0 +1,138 @@
+//! The numbers of a linearisation, at the parameters of every lane.
+
+use super::super::lane_number::{DIRECTIONS, Dual64, LaneNumber};
+use super::super::law::{Ask, Block};
+use super::super::{Sizes, StateSpaceModel};
+use crate::per_lanes;
+use crate::real::{F64x8, Real};
+
+type D = Dual64;
+
+/// Where the numbers stand behind those that the inner law derives: for every state its
+/// constant, then the slopes along x, u, w; for every output its constant, then those along x, u.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// Sizes of the inner law.
+    pub inner: Sizes,
+}
+
+impl Place {
+    /// How many numbers a row has.
+    fn width(self, ask: Ask) -> usize {
+        let n = self.inner;
+        1 + n.x + n.u + if ask == Ask::Derivative { n.w } else { 0 }
+    }
+
+    /// How many numbers there are.
+    pub fn count(self) -> usize {
+        let n = self.inner;
+        n.x * self.width(Ask::Derivative) + n.y * self.width(Ask::Output)
+    }
+
+    /// The first of a question's numbers, the inner law's own counted.
+    fn first(self, ask: Ask) -> usize {
+        let states = self.inner.x * self.width(Ask::Derivative);
+        self.inner.derived + if ask == Ask::Derivative { 0 } else { states }
+    }
+}
+
+per_lanes! {
+    /// The answer of the linear law: constant + slopes times (x, u, w).
+    fn rows[; R](block: &Block<'_, R>, first: usize, width: usize, out: &mut [R]) {
+        let n = block.sizes;
+        for (pack, out) in out.chunks_exact_mut(out.len() / block.packs).enumerate() {
+            let table = &block.derived[pack * n.derived..][..n.derived][first..];
+            let (x, u) = (&block.x[pack * n.x..][..n.x], &block.u[pack * n.u..][..n.u]);
+            let w = &block.w[pack * n.w..][..n.w];
+            for (out, row) in out.iter_mut().zip(table.chunks_exact(width)) {
+                let mut sum = row[0];
+                let mut slopes = &row[1..];
+                for values in [x, u, w] {
+                    for (&slope, &value) in slopes.iter().zip(values) {
+                        sum += slope * value;
+                    }
+                    slopes = &slopes[values.len().min(slopes.len())..];
+                }
+                *out = sum;
+            }
+        }
+    }
+}
+
+/// What the linear law answers, from the numbers among the block's derived ones.
+pub(super) fn answer<R: LaneNumber>(place: Place, ask: Ask, block: &Block<'_, R>, out: &mut [R]) {
+    if !out.is_empty() {
+        rows(block, place.first(ask), place.width(ask), out);
+    }
+}
+
+/// The numbers at each pack's parameters and at one time, pack by pack.
+pub(super) fn at(
+    of: &dyn StateSpaceModel,
+    place: Place,
+    (x, u): &(Vec<f64>, Vec<f64>),
+    (theta, packs): (&[F64x8], usize),
+    time: f64,
+) -> Vec<F64x8> {
+    let n = place.inner;
+    let constants =
+        |values: &[f64]| values.iter().map(|&v| D::constant(v)).collect::<Vec<D>>().repeat(packs);
+    let theta: Vec<D> = theta.iter().map(|&v| D::fixed(v)).collect();
+    let (x0, u0, w0) = (constants(x), constants(u), constants(&vec![0.0; n.w]));
+    let time = D::constant(time);
+    let mut derived = vec![D::constant(0.0); packs * n.derived];
+    let block =
+        Block { sizes: n, packs, theta: &theta, derived: &[], x: &x0, u: &u0, w: &w0, time };
+    if n.derived > 0 {
+        of.answer(Ask::Derived, D::call(&block, &mut derived));
+    }
+    let block = Block { derived: &derived, ..block };
+
+    let count = place.count();
+    let mut table = vec![F64x8::constant(0.0); packs * count];
+    let directions = n.x + n.u + n.w;
+    for begin in (0..directions.max(1)).step_by(DIRECTIONS) {
+        let group = begin..(begin + DIRECTIONS).min(directions);
+        let along = |values: &[D], first: usize, width: usize| {
+            let mut moved = values.to_vec();
+            for (i, dual) in moved.iter_mut().enumerate() {
+                let direction = first + i % width;
+                if group.contains(&direction) {
+                    dual.slope[direction - begin] = F64x8::constant(1.0);
+                }
+            }
+            moved
+        };
+        let (x, u) = (along(&x0, 0, n.x), along(&u0, n.x, n.u));
+        let w = along(&w0, n.x + n.u, n.w);
+        for ask in [Ask::Derivative, Ask::Output] {
+            let (width, height) = (place.width(ask), n.answer(ask));
+            let mut out = vec![D::constant(0.0); packs * height];
+            of.answer(ask, D::call(&Block { x: &x, u: &u, w: &w, ..block }, &mut out));
+            for (at, dual) in out.iter().enumerate() {
+                let first = place.first(ask) - n.derived;
+                let row = &mut table[at / height * count + first + at % height * width..][..width];
+                row[0] = dual.value;
+                for (direction, &slope) in group.clone().zip(&dual.slope) {
+                    if let Some(entry) = row.get_mut(1 + direction) {
+                        *entry = slope;
+                    }
+                }
+            }
+        }
+    }
+    // value at the point = constant + slopes times the point
+    let point: Vec<f64> = x.iter().chain(u).copied().collect();
+    for table in table.chunks_exact_mut(count.max(1)) {
+        let (states, outputs) = table.split_at_mut(n.x * place.width(Ask::Derivative));
+        for (rows, ask) in [(states, Ask::Derivative), (outputs, Ask::Output)] {
+            for row in rows.chunks_exact_mut(place.width(ask)) {
+                for (i, &at) in point.iter().enumerate() {
+                    let part = row[1 + i] * at;
+                    row[0] -= part;
+                }
+            }
+        }
+    }
+    table
+}
