@@ -1,6 +1,7 @@
 //! What every plug-in promises, tested for all that are registered.
 
 mod contract {
+    mod drifting;
     mod extended;
     mod files;
     mod neutral;

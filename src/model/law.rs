@@ -1,6 +1,7 @@
 //! The object-safe face of a model: called once per block of lanes.
 
 use std::fmt::Debug;
+use std::ops::Range;
 
 use super::Signals;
 use super::lane_number::{Dual32, Dual64};
@@ -86,6 +87,24 @@ pub struct Block<'a, R> {
     pub w: &'a [R],
     /// Time in s, the same for all packs.
     pub time: R,
+}
+
+impl<R: Copy> Block<'_, R> {
+    /// The question for some of the packs.
+    pub(crate) fn part(&self, packs: Range<usize>) -> Self {
+        let n = self.sizes;
+        // what derived numbers are made of has none yet
+        let derived = packs.start * n.derived..packs.end * n.derived;
+        Self {
+            packs: packs.len(),
+            theta: &self.theta[packs.start * n.theta..packs.end * n.theta],
+            derived: self.derived.get(derived).unwrap_or(&[]),
+            x: &self.x[packs.start * n.x..packs.end * n.x],
+            u: &self.u[packs.start * n.u..packs.end * n.u],
+            w: &self.w[packs.start * n.w..packs.end * n.w],
+            ..*self
+        }
+    }
 }
 
 /// A block of one of the four kinds of number that models are compiled for, and the slice

@@ -8,7 +8,7 @@ use super::lane_number::LaneNumber;
 use super::law::{Ask, Block, Call, Law, Matrices};
 use super::{Dual32, Dual64, Fault, Signals, Sizes, StateSpaceModel};
 use crate::real::{F64x8, Lanes, Real};
-use table::Place;
+use table::{Place, Rows};
 
 mod table;
 #[cfg(test)]
@@ -40,9 +40,9 @@ pub struct Linearised {
     pub at: Option<Point>,
     /// The model that is linearised.
     pub of: Box<dyn StateSpaceModel>,
-    /// The equilibrium, once found.
+    /// The point in numbers, once asked for.
     #[serde(skip)]
-    found: OnceLock<Option<(Vec<f64>, Vec<f64>)>>,
+    known: OnceLock<Option<(Vec<f64>, Vec<f64>)>>,
     /// Where its numbers stand, once asked for.
     #[serde(skip)]
     place: OnceLock<Place>,
@@ -51,20 +51,21 @@ pub struct Linearised {
 impl Linearised {
     /// The linearisation of a model at a point, or at the equilibrium nearest 0.
     pub fn new(of: Box<dyn StateSpaceModel>, at: Option<Point>) -> Self {
-        Self { at, of, found: OnceLock::new(), place: OnceLock::new() }
+        Self { at, of, known: OnceLock::new(), place: OnceLock::new() }
     }
 
     /// States and inputs where the model is linearised: the point given, else the
     /// equilibrium nearest 0 with inputs 0; `None` if there is none.
-    pub fn point(&self) -> Option<(Vec<f64>, Vec<f64>)> {
-        let sizes = Sizes::of(&self.of.signals());
-        if let Some(at) = &self.at {
+    pub fn point(&self) -> Option<&(Vec<f64>, Vec<f64>)> {
+        let known = self.known.get_or_init(|| {
+            let sizes = Sizes::of(&self.of.signals());
+            let Some(at) = &self.at else { return super::probe::equilibrium(self.of.as_ref()) };
             let filled = |values: &[f64], n: usize| {
                 if values.is_empty() { vec![0.0; n] } else { values.to_vec() }
             };
-            return Some((filled(&at.x, sizes.x), filled(&at.u, sizes.u)));
-        }
-        self.found.get_or_init(|| super::probe::equilibrium(self.of.as_ref())).clone()
+            Some((filled(&at.x, sizes.x), filled(&at.u, sizes.u)))
+        });
+        known.as_ref()
     }
 
     fn place(&self) -> Place {
@@ -72,27 +73,31 @@ impl Linearised {
     }
 
     /// The linear law's numbers at each pack's parameters; not numbers where there is no point.
-    fn numbers(&self, theta: &[F64x8], packs: usize) -> Vec<F64x8> {
-        let place = self.place();
-        self.point().map_or_else(
-            || vec![F64x8::constant(f64::NAN); packs * place.count()],
-            |point| table::at(self.of.as_ref(), place, &point, (theta, packs), 0.0),
-        )
+    fn numbers(&self, theta: &[F64x8], packs: usize, to: (Rows, &mut [F64x8])) {
+        match self.point() {
+            Some(at) => table::fill(self.of.as_ref(), self.place(), at, (theta, packs), 0.0, to),
+            None => to.1.fill(F64x8::constant(f64::NAN)),
+        }
     }
 
-    /// What the inner law derives, then the linear law's numbers, without the slopes of those.
-    fn derive<R: LaneNumber>(&self, block: &Block<'_, R>, out: &mut [R]) {
-        let (place, n, packs) = (self.place(), block.sizes, block.packs);
-        let own = place.inner.derived;
-        if own > 0 {
-            let mut derived = vec![R::constant(0.0); packs * own];
-            let block = Block { sizes: place.inner, ..*block };
+    /// What the inner law derives.
+    fn derive_inner<R: LaneNumber>(&self, block: &Block<'_, R>, out: &mut [R]) {
+        let (inner, all) = (self.place().inner, block.sizes.derived);
+        if inner.derived > 0 {
+            let mut derived = vec![R::constant(0.0); block.packs * inner.derived];
+            let block = Block { sizes: inner, ..*block };
             self.of.answer(Ask::Derived, R::call(&block, &mut derived));
-            for (out, derived) in out.chunks_exact_mut(n.derived).zip(derived.chunks_exact(own)) {
-                out[..own].copy_from_slice(derived);
+            for (out, derived) in out.chunks_exact_mut(all).zip(derived.chunks(inner.derived)) {
+                out[..inner.derived].copy_from_slice(derived);
             }
         }
-        // the numbers are computed in double precision, eight lanes at a time
+    }
+
+    /// What the inner law derives, then the linear law's numbers, without the slopes of those:
+    /// computed in double precision, eight lanes at a time.
+    fn derive<R: LaneNumber>(&self, block: &Block<'_, R>, out: &mut [R]) {
+        self.derive_inner(block, out);
+        let (place, n, packs) = (self.place(), block.sizes, block.packs);
         let each = R::LANES / 8;
         let theta: Vec<F64x8> = (0..packs * each)
             .flat_map(|part| {
@@ -101,10 +106,11 @@ impl Linearised {
                 })
             })
             .collect();
-        let numbers = self.numbers(&theta, packs * each);
-        for part in 0..packs * each {
-            let numbers = &numbers[part * place.count()..][..place.count()];
-            let out = &mut out[part / each * n.derived..][own..n.derived];
+        let rows = Rows { stride: place.count(), skip: 0 };
+        let mut numbers = vec![F64x8::constant(0.0); packs * each * rows.stride];
+        self.numbers(&theta, packs * each, (rows, &mut numbers));
+        for (part, numbers) in numbers.chunks_exact(rows.stride).enumerate() {
+            let out = &mut out[part / each * n.derived..][place.inner.derived..n.derived];
             for (to, number) in out.iter_mut().zip(numbers) {
                 for lane in 0..8 {
                     to.set_lane(part % each * 8 + lane, number.0[lane]);
@@ -131,7 +137,10 @@ impl Linearised {
                     for value in moved.iter_mut().skip(i).step_by(n.theta) {
                         *value += F64x8::constant(step);
                     }
-                    (self.numbers(&moved, packs), weight / (12.0 * h))
+                    let rows = Rows { stride: n.derived - own, skip: 0 };
+                    let mut numbers = vec![F64x8::constant(0.0); packs * rows.stride];
+                    self.numbers(&moved, packs, (rows, &mut numbers));
+                    (numbers, weight / (12.0 * h))
                 });
             let outs = out.chunks_exact_mut(n.derived).flat_map(|out| &mut out[own..]);
             let count = n.derived - own;
@@ -154,11 +163,12 @@ impl Linearised {
             Ask::Derivative | Ask::Output => table::answer(place, ask, block, out),
             Ask::Derived => self.derive(block, out),
             Ask::Coordinates => {
-                let (own, all) = (place.inner.derived, block.sizes.derived);
-                let each = block.derived.chunks_exact(all.max(1));
-                let derived: Vec<R> = each.flat_map(|derived| &derived[..own]).copied().collect();
-                let inner = Block { sizes: place.inner, derived: &derived, ..*block };
-                self.of.answer(ask, R::call(&inner, out));
+                let sizes = place.inner;
+                for (pack, out) in out.chunks_exact_mut(sizes.z.max(1)).enumerate() {
+                    let one = block.part(pack..pack + 1);
+                    let inner = Block { sizes, derived: &one.derived[..sizes.derived], ..one };
+                    self.of.answer(ask, R::call(&inner, out));
+                }
             }
         }
     }
@@ -167,7 +177,13 @@ impl Linearised {
     fn is_timed(&self) -> bool {
         let Some(point) = self.point() else { return false };
         let theta: Vec<_> = self.of.signals().theta().iter().map(|&v| F64x8::constant(v)).collect();
-        let at = |time| table::at(self.of.as_ref(), self.place(), &point, (&theta, 1), time);
+        let rows = Rows { stride: self.place().count(), skip: 0 };
+        let at = |time| {
+            let mut numbers = vec![F64x8::constant(0.0); rows.stride];
+            let to = (rows, &mut numbers[..]);
+            table::fill(self.of.as_ref(), self.place(), point, (&theta, 1), time, to);
+            numbers
+        };
         let bits =
             |numbers: Vec<F64x8>| numbers.iter().map(|v| v.0[0].to_bits()).collect::<Vec<_>>();
         let now = bits(at(0.0));
@@ -214,6 +230,11 @@ impl Law for Linearised {
 
     fn answer(&self, ask: Ask, call: Call<'_>) {
         match call {
+            Call::F64(block, out) if ask == Ask::Derived => {
+                self.derive_inner(block, out);
+                let rows = Rows { stride: block.sizes.derived, skip: self.place().inner.derived };
+                self.numbers(block.theta, block.packs, (rows, out));
+            }
             Call::F64(block, out) => self.ask(ask, block, out),
             Call::F32(block, out) => self.ask(ask, block, out),
             Call::Dual64(block, out) => {
@@ -238,7 +259,7 @@ impl Law for Linearised {
     }
 
     fn matrices(&self, theta: &[f64]) -> Option<Matrices> {
-        let (x, u) = self.point()?;
+        let (x, u) = self.point()?.clone();
         let sizes = Sizes::of(&self.of.signals());
         let at =
             super::probe::Point { theta: theta.to_vec(), x, u, w: vec![0.0; sizes.w], time: 0.0 };

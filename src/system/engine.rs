@@ -1,11 +1,11 @@
 //! The simulation: groups of lanes, each with its own effects, through one law.
 
-use crate::model::{Ask, Block, LaneNumber, Law};
+use crate::model::{Ask, Block, Law};
 
 use super::arithmetic::{add, euler, flush, magnitude, move_along, rk4};
 use super::exact::Exact;
 use super::group::{Group, Instant};
-use super::lane::{Drive, Lane, Track};
+use super::lane::{Drive, Lane, Track, pack};
 use super::plan::Plan;
 use super::sampling::{Hold, Method};
 use super::wiring::EffectNumber;
@@ -48,24 +48,6 @@ pub(crate) fn simulate<R: EffectNumber>(
     tracks
 }
 
-/// Spreads one value per lane over packs; lanes beyond the last repeat it.
-pub(crate) fn pack<R: LaneNumber>(
-    lanes: &[Lane],
-    packs: usize,
-    width: usize,
-    get: impl Fn(&Lane, usize) -> f64,
-) -> Vec<R> {
-    let mut out = vec![R::constant(0.0); packs * width];
-    let last = lanes.len().saturating_sub(1);
-    for l in 0..packs * R::LANES {
-        let Some(lane) = lanes.get(l.min(last)) else { continue };
-        for i in 0..width {
-            out[l / R::LANES * width + i].set_lane(l % R::LANES, get(lane, i));
-        }
-    }
-    out
-}
-
 /// Working storage of one block: what all packs share.
 struct Run<'a, R> {
     base: &'a Plan,
@@ -76,8 +58,12 @@ struct Run<'a, R> {
     /// Parameters at this instant, where some drift.
     theta_now: Vec<R>,
     derived: Vec<R>,
+    /// What the law derives from the parameters before they drift.
+    still: Vec<R>,
     x: Vec<R>,
     xt: Vec<R>,
+    /// Room for states or their rates.
+    room: Vec<R>,
     k: [Vec<R>; 4],
     u: [Vec<R>; 3],
     /// Inputs with what effects add, and what enters the own channels.
@@ -92,9 +78,9 @@ struct Run<'a, R> {
     /// Whether any of them enters an input.
     into_inputs: bool,
     fine: bool,
-    /// Whether parameters drift, and whether nothing has been computed yet.
+    /// Whether parameters drift, and the time up to which they have.
     drifting: bool,
-    first_ever: bool,
+    drifted: Option<f64>,
     first: bool,
     /// Sample at which time is 0.
     origin: i64,
@@ -124,7 +110,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             inside: made.iter().any(|group| group.inside),
             into_inputs: made.iter().any(Group::enters_inputs),
             drifting: made.iter().any(Group::is_drifting),
-            first_ever: true,
+            drifted: None,
             fine: made.iter().any(|group| group.outputs.fine),
             theta_now: theta.clone(),
             groups: made,
@@ -133,8 +119,10 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             packs,
             theta,
             derived: zeros(n.derived),
+            still: zeros(n.derived),
             x: zeros(n.x),
             xt: zeros(n.x),
+            room: zeros(n.x),
             k: [zeros(n.x), zeros(n.x), zeros(n.x), zeros(n.x)],
             u: [zeros(n.u), zeros(n.u), zeros(n.u)],
             u_in: zeros(n.u),
@@ -211,25 +199,35 @@ impl<'a, R: EffectNumber> Run<'a, R> {
 
     /// Parameters at a given time, and what the law derives from them.
     fn drift(&mut self, time: f64) {
-        if !self.first_ever && !self.drifting {
+        let known = self.drifted.replace(time);
+        if known == Some(time) || known.is_some() && !self.drifting {
             return;
         }
-        self.first_ever = false;
-        for group in &self.groups {
-            group.drift(time, &self.theta, &mut self.theta_now);
+        let drifting = self.groups.iter().filter(|group| group.is_drifting());
+        drifting.clone().for_each(|group| group.drift(time, &self.theta, &mut self.theta_now));
+        let n = self.base.sizes;
+        if n.derived == 0 {
+            return;
         }
-        if self.base.sizes.derived > 0 {
-            let block = Block {
-                sizes: self.base.sizes,
-                packs: self.packs,
-                theta: &self.theta_now,
-                derived: &[],
-                x: &self.x,
-                u: &self.u[0],
-                w: &self.w,
-                time: R::constant(time),
-            };
-            self.law.answer(Ask::Derived, R::call(&block, &mut self.derived));
+        let block = Block {
+            sizes: n,
+            packs: self.packs,
+            theta: &self.theta,
+            derived: &[],
+            x: &self.x,
+            u: &self.u[0],
+            w: &self.w,
+            time: R::constant(time),
+        };
+        if known.is_none() {
+            self.law.answer(Ask::Derived, R::call(&block, &mut self.still));
+            self.derived.copy_from_slice(&self.still);
+        }
+        let block = Block { theta: &self.theta_now, ..block };
+        for group in drifting {
+            let packs = group.first..group.first + group.packs;
+            let out = &mut self.derived[packs.start * n.derived..packs.end * n.derived];
+            self.law.answer(Ask::Derived, R::call(&block.part(packs), out));
         }
     }
 
@@ -357,10 +355,6 @@ impl<'a, R: EffectNumber> Run<'a, R> {
                 u = &self.u_in;
             }
         }
-        if let Some(exact) = &mut self.exact {
-            exact.note(i, u, &self.u[slot], &self.w);
-            return;
-        }
         let out = &mut self.k[i];
         let block = Block {
             sizes: n,
@@ -372,6 +366,19 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             w: &self.w,
             time: R::constant(time),
         };
+        if let Some(exact) = &mut self.exact {
+            exact.note(i, u, &self.u[slot], &self.w);
+            let still = Block { theta: &self.theta, derived: &self.still, ..block };
+            for group in self.groups.iter().filter(|group| group.is_drifting()) {
+                let packs = group.first..group.first + group.packs;
+                let rows = packs.start * n.x..packs.end * n.x;
+                let (now, then) = (&mut out[rows.clone()], &mut self.room[rows.clone()]);
+                self.law.answer(Ask::Derivative, R::call(&block.part(packs.clone()), now));
+                self.law.answer(Ask::Derivative, R::call(&still.part(packs), then));
+                exact.note_drift(i, rows.start, now, then);
+            }
+            return;
+        }
         self.law.answer(Ask::Derivative, R::call(&block, out));
         if !base.declared_channels && self.inside {
             add(out, &self.w);
@@ -381,8 +388,8 @@ impl<'a, R: EffectNumber> Run<'a, R> {
     /// One integration step, or one sample of a discrete law.
     fn advance(&mut self, h: f64) {
         let (t, base) = (self.time, self.base);
-        if let (Some(exact), false) = (&self.exact, self.inside) {
-            exact.finish(&mut self.x, &self.u, false);
+        if let (Some(exact), false) = (&self.exact, self.inside || self.drifting) {
+            exact.finish(&mut self.x, &mut self.room, &self.u, false);
             return;
         }
         self.stage(0, 0, t);
@@ -398,7 +405,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             self.trial(2, h, 1.0);
             self.stage(3, 2, t + h);
             if let Some(exact) = &self.exact {
-                exact.finish(&mut self.x, &self.u, true);
+                exact.finish(&mut self.x, &mut self.room, &self.u, true);
             } else {
                 rk4(&mut self.x, &self.k, h);
             }

@@ -4,6 +4,7 @@
 use nalgebra::DMatrix;
 
 use crate::model::{LaneNumber, Law, Matrices};
+use crate::per_lanes;
 
 use super::lane::Lane;
 use super::plan::Plan;
@@ -23,7 +24,6 @@ pub(crate) struct Exact<R> {
     n: usize,
     nu: usize,
     nw: usize,
-    packs: usize,
     step: f64,
     half: Transition<R>,
     full: Transition<R>,
@@ -54,7 +54,6 @@ impl<R: LaneNumber> Exact<R> {
             n,
             nu,
             nw,
-            packs,
             step,
             half: blank(),
             full: blank(),
@@ -85,18 +84,15 @@ impl<R: LaneNumber> Exact<R> {
     /// the own channels.
     pub fn note(&mut self, i: usize, with: &[R], raw: &[R], w: &[R]) {
         let (n, nu, nw) = (self.n, self.nu, self.nw);
-        for pack in 0..self.packs {
-            for row in 0..n {
-                let mut sum = R::constant(0.0);
-                for j in 0..nu {
-                    let extra = with[pack * nu + j] - raw[pack * nu + j];
-                    sum += self.b[(pack * n + row) * nu + j] * extra;
-                }
-                for j in 0..nw {
-                    sum += self.g[(pack * n + row) * nw + j] * w[pack * nw + j];
-                }
-                self.added[i][pack * n + row] = sum;
-            }
+        let to = &mut self.added[i];
+        entered([n, nu, nw], &self.b, &self.g, to, with, raw, w);
+    }
+
+    /// Adds to what effects add at stage `i`, from entry `first` on, how far the law `now`, with
+    /// parameters that drift, is from the one that is advanced exactly.
+    pub fn note_drift(&mut self, i: usize, first: usize, now: &[R], then: &[R]) {
+        for ((added, &now), &then) in self.added[i][first..].iter_mut().zip(now).zip(then) {
+            *added += now - then;
         }
     }
 
@@ -104,50 +100,39 @@ impl<R: LaneNumber> Exact<R> {
     pub fn trial(&self, i: usize, to: &mut [R], x: &[R], u: &[Vec<R>; 3]) {
         let h = self.step;
         let added = &self.added[i];
+        let (n, nu) = (self.n, self.nu);
         match i {
             // half a step, its addition carried along by the linear part
-            0 => self.half.apply(self, to, x, (&u[0], &u[1]), Some((added, 0.5 * h))),
+            0 => {
+                self.half.apply((n, nu), to, x, (&u[0], &u[1]));
+                carry(n, &self.half.state, to, added, 0.5 * h);
+            }
             1 => {
-                self.half.apply(self, to, x, (&u[0], &u[1]), None);
+                self.half.apply((n, nu), to, x, (&u[0], &u[1]));
                 for (to, &added) in to.iter_mut().zip(added) {
                     *to += added * (0.5 * h);
                 }
             }
             _ => {
-                self.full.apply(self, to, x, (&u[0], &u[2]), None);
-                self.carry(&self.half, to, added, h);
+                self.full.apply((n, nu), to, x, (&u[0], &u[2]));
+                carry(n, &self.half.state, to, added, h);
             }
         }
     }
 
-    /// The state at the end of the step.
-    pub fn finish(&self, x: &mut Vec<R>, u: &[Vec<R>; 3], any: bool) {
-        let h = self.step;
-        let mut to = x.clone();
-        self.full.apply(self, &mut to, x, (&u[0], &u[2]), None);
+    /// The state at the end of the step; `to` is room for it.
+    pub fn finish(&self, x: &mut Vec<R>, to: &mut Vec<R>, u: &[Vec<R>; 3], any: bool) {
+        let (n, h) = (self.n, self.step);
+        self.full.apply((n, self.nu), to, x, (&u[0], &u[2]));
         if any {
-            self.carry(&self.full, &mut to, &self.added[0], h / 6.0);
-            self.carry(&self.half, &mut to, &self.added[1], h / 3.0);
-            self.carry(&self.half, &mut to, &self.added[2], h / 3.0);
+            carry(n, &self.full.state, to, &self.added[0], h / 6.0);
+            carry(n, &self.half.state, to, &self.added[1], h / 3.0);
+            carry(n, &self.half.state, to, &self.added[2], h / 3.0);
             for (to, &added) in to.iter_mut().zip(&self.added[3]) {
                 *to += added * (h / 6.0);
             }
         }
-        *x = to;
-    }
-
-    /// to += transition * what * factor
-    fn carry(&self, by: &Transition<R>, to: &mut [R], what: &[R], factor: f64) {
-        let n = self.n;
-        for pack in 0..self.packs {
-            for row in 0..n {
-                let mut sum = R::constant(0.0);
-                for j in 0..n {
-                    sum += by.state[(pack * n + row) * n + j] * what[pack * n + j];
-                }
-                to[pack * n + row] += sum * factor;
-            }
-        }
+        std::mem::swap(x, to);
     }
 }
 
@@ -158,35 +143,89 @@ impl<R: LaneNumber> Transition<R> {
         set(&mut self.change, &from[2], lane);
     }
 
-    /// to = transition of x (plus an addition) under inputs from `u.0` to `u.1`.
-    fn apply(
-        &self,
-        sizes: &Exact<R>,
+    /// to = transition of x under inputs from `u.0` to `u.1`.
+    fn apply(&self, sizes: (usize, usize), to: &mut [R], x: &[R], (from, until): (&[R], &[R])) {
+        moved(sizes, (&self.state, &self.start, &self.change), to, x, from, until);
+    }
+}
+
+per_lanes! {
+    /// Sizes are those of states and inputs; the matrices belong to states, inputs, their change.
+    fn moved[; R](
+        sizes: (usize, usize),
+        by: (&[R], &[R], &[R]),
         to: &mut [R],
         x: &[R],
-        u: (&[R], &[R]),
-        plus: Option<(&Vec<R>, f64)>,
+        from: &[R],
+        until: &[R],
     ) {
-        let (n, nu) = (sizes.n, sizes.nu);
-        for pack in 0..sizes.packs {
-            for row in 0..n {
+        let ((n, nu), (state, start, change)) = (sizes, by);
+        for (pack, to) in to.chunks_exact_mut(n).enumerate() {
+            let x = &x[pack * n..][..n];
+            let (from, until) = (&from[pack * nu..][..nu], &until[pack * nu..][..nu]);
+            for (row, to) in to.iter_mut().enumerate() {
                 let at = pack * n + row;
+                let state = &state[at * n..][..n];
+                let start = &start[at * (nu + 1)..][..nu + 1];
+                let change = &change[at * (nu + 1)..][..nu];
                 // the constant part first, then inputs, then states
-                let mut sum = self.start[at * (nu + 1) + nu];
+                let mut sum = start[nu];
                 for j in 0..nu {
-                    let (from, until) = (u.0[pack * nu + j], u.1[pack * nu + j]);
-                    sum += self.start[at * (nu + 1) + j] * from;
-                    sum += self.change[at * (nu + 1) + j] * (until - from);
+                    sum += start[j] * from[j];
+                    sum += change[j] * (until[j] - from[j]);
                 }
                 for j in 0..n {
-                    let mut x = x[pack * n + j];
-                    if let Some((added, factor)) = plus {
-                        x += added[pack * n + j] * factor;
-                    }
-                    sum += self.state[at * n + j] * x;
+                    sum += state[j] * x[j];
                 }
-                to[at] = sum;
+                *to = sum;
             }
+        }
+    }
+}
+
+per_lanes! {
+    /// to += transition of `n` states * what * factor
+    fn carry[; R](n: usize, state: &[R], to: &mut [R], what: &[R], factor: f64) {
+        for (pack, to) in to.chunks_exact_mut(n).enumerate() {
+            let what = &what[pack * n..][..n];
+            for (row, to) in to.iter_mut().enumerate() {
+                let state = &state[(pack * n + row) * n..][..n];
+                let mut sum = R::constant(0.0);
+                for j in 0..n {
+                    sum += state[j] * what[j];
+                }
+                *to += sum * factor;
+            }
+        }
+    }
+}
+
+per_lanes! {
+    /// What enters the derivatives of `sizes[0]` states by inputs (`with` against `raw`) through
+    /// `b` and by own channels through `g`.
+    fn entered[; R](
+        sizes: [usize; 3],
+        b: &[R],
+        g: &[R],
+        to: &mut [R],
+        with: &[R],
+        raw: &[R],
+        w: &[R],
+    ) {
+        let [n, nu, nw] = sizes;
+        for (at, to) in to.iter_mut().enumerate() {
+            let pack = at / n;
+            let (b, g) = (&b[at * nu..][..nu], &g[at * nw..][..nw]);
+            let (with, raw) = (&with[pack * nu..][..nu], &raw[pack * nu..][..nu]);
+            let w = &w[pack * nw..][..nw];
+            let mut sum = R::constant(0.0);
+            for j in 0..nu {
+                sum += b[j] * (with[j] - raw[j]);
+            }
+            for j in 0..nw {
+                sum += g[j] * w[j];
+            }
+            *to = sum;
         }
     }
 }

@@ -2,9 +2,8 @@
 
 use crate::model::{Ask, Block, Law};
 
-use super::engine::pack;
 use super::inputs::InputPaths;
-use super::lane::Lane;
+use super::lane::{Lane, pack};
 use super::outputs::OutputPaths;
 use super::plan::{Plan, Way};
 use super::sight::{Found, Sight, find};

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::model::LaneNumber;
+
 /// The inputs of a record, and the stretches over which they are known.
 #[derive(Debug, Clone)]
 pub(crate) struct Drive {
@@ -64,4 +66,22 @@ impl Track {
     pub fn is_finite(&self) -> bool {
         self.diverged_at.is_none()
     }
+}
+
+/// Spreads one value per lane over packs; lanes beyond the last repeat it.
+pub(crate) fn pack<R: LaneNumber>(
+    lanes: &[Lane],
+    packs: usize,
+    width: usize,
+    get: impl Fn(&Lane, usize) -> f64,
+) -> Vec<R> {
+    let mut out = vec![R::constant(0.0); packs * width];
+    let last = lanes.len().saturating_sub(1);
+    for l in 0..packs * R::LANES {
+        let Some(lane) = lanes.get(l.min(last)) else { continue };
+        for i in 0..width {
+            out[l / R::LANES * width + i].set_lane(l % R::LANES, get(lane, i));
+        }
+    }
+    out
 }

@@ -66,52 +66,68 @@ pub(super) fn answer<R: LaneNumber>(place: Place, ask: Ask, block: &Block<'_, R>
     }
 }
 
-/// The numbers at each pack's parameters and at one time, pack by pack.
-pub(super) fn at(
+/// Where the numbers of a pack go: `skip` numbers behind the first of `stride`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rows {
+    pub stride: usize,
+    pub skip: usize,
+}
+
+/// Fills in the numbers at each pack's parameters and at one time.
+pub(super) fn fill(
     of: &dyn StateSpaceModel,
     place: Place,
     (x, u): &(Vec<f64>, Vec<f64>),
     (theta, packs): (&[F64x8], usize),
     time: f64,
-) -> Vec<F64x8> {
+    (rows, out): (Rows, &mut [F64x8]),
+) {
     let n = place.inner;
-    let constants =
-        |values: &[f64]| values.iter().map(|&v| D::constant(v)).collect::<Vec<D>>().repeat(packs);
     let theta: Vec<D> = theta.iter().map(|&v| D::fixed(v)).collect();
-    let (x0, u0, w0) = (constants(x), constants(u), constants(&vec![0.0; n.w]));
+    let zero = D::constant(0.0);
+    // all packs' states, then their inputs, then their channels
+    let (inputs, channels, end) = (packs * n.x, packs * (n.x + n.u), packs * (n.x + n.u + n.w));
+    let mut point = vec![zero; end];
+    for (to, &at) in point.iter_mut().zip(x.iter().cycle().take(inputs)) {
+        to.value = F64x8::constant(at);
+    }
+    for (to, &at) in point[inputs..].iter_mut().zip(u.iter().cycle().take(channels - inputs)) {
+        to.value = F64x8::constant(at);
+    }
     let time = D::constant(time);
-    let mut derived = vec![D::constant(0.0); packs * n.derived];
-    let block =
-        Block { sizes: n, packs, theta: &theta, derived: &[], x: &x0, u: &u0, w: &w0, time };
+    let mut derived = vec![zero; packs * n.derived];
     if n.derived > 0 {
+        let (x, rest) = point.split_at(inputs);
+        let (u, w) = rest.split_at(channels - inputs);
+        let block = Block { sizes: n, packs, theta: &theta, derived: &[], x, u, w, time };
         of.answer(Ask::Derived, D::call(&block, &mut derived));
     }
-    let block = Block { derived: &derived, ..block };
 
-    let count = place.count();
-    let mut table = vec![F64x8::constant(0.0); packs * count];
+    let mut answers = vec![zero; packs * n.x.max(n.y)];
     let directions = n.x + n.u + n.w;
     for begin in (0..directions.max(1)).step_by(DIRECTIONS) {
         let group = begin..(begin + DIRECTIONS).min(directions);
-        let along = |values: &[D], first: usize, width: usize| {
-            let mut moved = values.to_vec();
-            for (i, dual) in moved.iter_mut().enumerate() {
+        let each = [(0, n.x, 0), (inputs, n.u, n.x), (channels, n.w, n.x + n.u)];
+        for (start, width, first) in each {
+            for (i, dual) in point[start..][..packs * width].iter_mut().enumerate() {
                 let direction = first + i % width;
+                dual.slope = zero.slope;
                 if group.contains(&direction) {
                     dual.slope[direction - begin] = F64x8::constant(1.0);
                 }
             }
-            moved
-        };
-        let (x, u) = (along(&x0, 0, n.x), along(&u0, n.x, n.u));
-        let w = along(&w0, n.x + n.u, n.w);
+        }
+        let (x, rest) = point.split_at(inputs);
+        let (u, w) = rest.split_at(channels - inputs);
+        let block = Block { sizes: n, packs, theta: &theta, derived: &derived, x, u, w, time };
         for ask in [Ask::Derivative, Ask::Output] {
             let (width, height) = (place.width(ask), n.answer(ask));
-            let mut out = vec![D::constant(0.0); packs * height];
-            of.answer(ask, D::call(&Block { x: &x, u: &u, w: &w, ..block }, &mut out));
-            for (at, dual) in out.iter().enumerate() {
-                let first = place.first(ask) - n.derived;
-                let row = &mut table[at / height * count + first + at % height * width..][..width];
+            let answers = &mut answers[..packs * height];
+            of.answer(ask, D::call(&block, answers));
+            let first = rows.skip + place.first(ask) - n.derived;
+            for (at, dual) in answers.iter().enumerate() {
+                let start = at / height * rows.stride + first + at % height * width;
+                let row = &mut out[start..][..width];
                 row[0] = dual.value;
                 for (direction, &slope) in group.clone().zip(&dual.slope) {
                     if let Some(entry) = row.get_mut(1 + direction) {
@@ -122,17 +138,16 @@ pub(super) fn at(
         }
     }
     // value at the point = constant + slopes times the point
-    let point: Vec<f64> = x.iter().chain(u).copied().collect();
-    for table in table.chunks_exact_mut(count.max(1)) {
+    for out in out.chunks_exact_mut(rows.stride) {
+        let table = &mut out[rows.skip..][..place.count()];
         let (states, outputs) = table.split_at_mut(n.x * place.width(Ask::Derivative));
         for (rows, ask) in [(states, Ask::Derivative), (outputs, Ask::Output)] {
             for row in rows.chunks_exact_mut(place.width(ask)) {
-                for (i, &at) in point.iter().enumerate() {
+                for (i, &at) in x.iter().chain(u).enumerate() {
                     let part = row[1 + i] * at;
                     row[0] -= part;
                 }
             }
         }
     }
-    table
 }
