@@ -74,17 +74,13 @@ fn a_right_model_of_an_unstable_plant_is_left_alone() {
 }
 
 #[test]
-#[ignore = "takes a minute: cargo test --test hard_plants -- --ignored"]
+#[ignore = "fails since decision 9, see docs/results.md; takes a minute"]
 fn dry_friction_in_an_unstable_plant_is_named() {
     let finding = diagnosed(&held_up(0.08, 3));
     let first = &finding.causes[0];
-    let is_dry = |effect: &str, into: &str| (effect, into) == ("coulomb_friction", "torque_on_arm");
-    let alike = first.indistinguishable.iter().any(|a| is_dry(&a.effect, &a.into));
-    assert!(is_dry(&first.effect, &first.into) || alike, "{finding}");
-    // a linear law that is lost outside of a narrow clearance is the same force
-    let value = |name: &str| first.parameters.iter().find(|v| v.name == name).map(|v| v.value);
-    let level = value("level").or(value("slope").zip(value("width")).map(|(s, w)| s * w)).unwrap();
-    assert!((level.abs() - 0.08).abs() < 0.012, "{}", first.sentence);
+    assert_eq!((first.effect.as_str(), first.into.as_str()), ("coulomb_friction", "torque_on_arm"));
+    let level = first.parameters.iter().find(|v| v.name == "level").unwrap();
+    assert!((level.value + 0.08).abs() < 0.01, "{}", first.sentence);
     assert!(finding.gain.error_removed > 0.95, "{finding}");
 }
 
