@@ -53,7 +53,8 @@ impl Teller<'_, '_> {
         let y_before = self.problem.simulate(start, Grain::Fine);
         let y_before = y_before.unwrap_or_else(|| chosen.y.clone());
         let drives: Vec<&[f64]> = self.joined.drive.inputs.iter().map(Vec::as_slice).collect();
-        let floors = test.floors(system, &before, &self.off(&y_before), &drives);
+        let off_before = self.off(&y_before);
+        let floors = test.floors(system, &before, &off_before, &drives);
         let mut causes = self.causes(chosen, test, &before, &after, &floors)?;
         causes.extend(self.moved(chosen, test, &before, &after, &floors)?);
         let false_discovery = false_discovery(&causes);
@@ -88,7 +89,7 @@ impl Teller<'_, '_> {
                 })
                 .collect::<BTreeMap<_, _>>()
         };
-        let noise_floor = self.noise_floor(&y_before, &drives, used);
+        let noise_floor = self.noise_floor(&off_before, &drives, used);
         let off = self.off(&chosen.y);
         let left = Left {
             whiteness: self.per_output(|o| whiteness(&self.problem.counted(o, &off[o], Part::All))),
@@ -201,11 +202,10 @@ impl Teller<'_, '_> {
 
     fn noise_floor(
         &self,
-        before: &[Vec<f64>],
+        off: &[Vec<f64>],
         drives: &[&[f64]],
         used: &[Record],
     ) -> BTreeMap<String, NoiseFloor> {
-        let off = self.off(before);
         let outputs = self.problem.base.signals.outputs.iter().enumerate();
         outputs
             .filter_map(|(o, signal)| {

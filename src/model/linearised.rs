@@ -72,12 +72,21 @@ impl Linearised {
         *self.place.get_or_init(|| Place { inner: Sizes::of(&self.of.signals()) })
     }
 
-    /// The linear law's numbers at each pack's parameters; not numbers where there is no point.
-    fn numbers(&self, theta: &[F64x8], packs: usize, to: (Rows, &mut [F64x8])) {
+    /// Fills in the linear law's numbers at each pack's parameters and at one time; not numbers
+    /// where there is no point.
+    fn fill(&self, theta: (&[F64x8], usize), time: f64, to: (Rows, &mut [F64x8])) {
         match self.point() {
-            Some(at) => table::fill(self.of.as_ref(), self.place(), at, (theta, packs), 0.0, to),
+            Some(at) => table::fill(self.of.as_ref(), self.place(), at, theta, time, to),
             None => to.1.fill(F64x8::constant(f64::NAN)),
         }
+    }
+
+    /// The same numbers alone, pack by pack.
+    fn numbers(&self, theta: &[F64x8], packs: usize, time: f64) -> Vec<F64x8> {
+        let rows = Rows { stride: self.place().count(), skip: 0 };
+        let mut numbers = vec![F64x8::constant(0.0); packs * rows.stride];
+        self.fill((theta, packs), time, (rows, &mut numbers));
+        numbers
     }
 
     /// What the inner law derives.
@@ -106,10 +115,8 @@ impl Linearised {
                 })
             })
             .collect();
-        let rows = Rows { stride: place.count(), skip: 0 };
-        let mut numbers = vec![F64x8::constant(0.0); packs * each * rows.stride];
-        self.numbers(&theta, packs * each, (rows, &mut numbers));
-        for (part, numbers) in numbers.chunks_exact(rows.stride).enumerate() {
+        let numbers = self.numbers(&theta, packs * each, 0.0);
+        for (part, numbers) in numbers.chunks_exact(place.count()).enumerate() {
             let out = &mut out[part / each * n.derived..][place.inner.derived..n.derived];
             for (to, number) in out.iter_mut().zip(numbers) {
                 for lane in 0..8 {
@@ -137,10 +144,7 @@ impl Linearised {
                     for value in moved.iter_mut().skip(i).step_by(n.theta) {
                         *value += F64x8::constant(step);
                     }
-                    let rows = Rows { stride: n.derived - own, skip: 0 };
-                    let mut numbers = vec![F64x8::constant(0.0); packs * rows.stride];
-                    self.numbers(&moved, packs, (rows, &mut numbers));
-                    (numbers, weight / (12.0 * h))
+                    (self.numbers(&moved, packs, 0.0), weight / (12.0 * h))
                 });
             let outs = out.chunks_exact_mut(n.derived).flat_map(|out| &mut out[own..]);
             let count = n.derived - own;
@@ -175,19 +179,12 @@ impl Linearised {
 
     /// Whether the law is another one at another time.
     fn is_timed(&self) -> bool {
-        let Some(point) = self.point() else { return false };
         let theta: Vec<_> = self.of.signals().theta().iter().map(|&v| F64x8::constant(v)).collect();
-        let rows = Rows { stride: self.place().count(), skip: 0 };
-        let at = |time| {
-            let mut numbers = vec![F64x8::constant(0.0); rows.stride];
-            let to = (rows, &mut numbers[..]);
-            table::fill(self.of.as_ref(), self.place(), point, (&theta, 1), time, to);
-            numbers
+        let bits = |time| -> Vec<u64> {
+            self.numbers(&theta, 1, time).iter().map(|number| number.0[0].to_bits()).collect()
         };
-        let bits =
-            |numbers: Vec<F64x8>| numbers.iter().map(|v| v.0[0].to_bits()).collect::<Vec<_>>();
-        let now = bits(at(0.0));
-        [0.37, 11.3, 1234.5].into_iter().any(|time| bits(at(time)) != now)
+        let now = bits(0.0);
+        [0.37, 11.3, 1234.5].into_iter().any(|time| bits(time) != now)
     }
 }
 
@@ -233,7 +230,7 @@ impl Law for Linearised {
             Call::F64(block, out) if ask == Ask::Derived => {
                 self.derive_inner(block, out);
                 let rows = Rows { stride: block.sizes.derived, skip: self.place().inner.derived };
-                self.numbers(block.theta, block.packs, (rows, out));
+                self.fill((block.theta, block.packs), 0.0, (rows, out));
             }
             Call::F64(block, out) => self.ask(ask, block, out),
             Call::F32(block, out) => self.ask(ask, block, out),

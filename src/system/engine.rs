@@ -225,7 +225,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         }
         let block = Block { theta: &self.theta_now, ..block };
         for group in drifting {
-            let packs = group.first..group.first + group.packs;
+            let packs = group.places();
             let out = &mut self.derived[packs.start * n.derived..packs.end * n.derived];
             self.law.answer(Ask::Derived, R::call(&block.part(packs), out));
         }
@@ -251,7 +251,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         self.ask(Ask::Output, 0, self.time);
         let (nx, nu, ny) = (self.base.sizes.x, self.base.sizes.u, self.base.sizes.y);
         for group in &mut self.groups {
-            let packs = group.first..group.first + group.packs;
+            let packs = group.places();
             let at = Instant {
                 law: self.law,
                 theta: group.share(&self.theta_now, self.base.sizes.theta),
@@ -291,7 +291,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         let base = self.base;
         let (nx, nu) = (base.sizes.x, base.sizes.u);
         for (group, tracks) in self.groups.iter_mut().zip(tracks) {
-            let packs = group.first..group.first + group.packs;
+            let packs = group.places();
             let at = Instant {
                 law: self.law,
                 theta: group.share(&self.theta_now, base.sizes.theta),
@@ -338,7 +338,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             }
             self.w.fill(R::constant(0.0));
             for group in self.groups.iter_mut().filter(|group| group.inside) {
-                let packs = group.first..group.first + group.packs;
+                let packs = group.places();
                 let at = Instant {
                     law: self.law,
                     theta: group.share(&self.theta_now, n.theta),
@@ -370,7 +370,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             exact.note(i, u, &self.u[slot], &self.w);
             let still = Block { theta: &self.theta, derived: &self.still, ..block };
             for group in self.groups.iter().filter(|group| group.is_drifting()) {
-                let packs = group.first..group.first + group.packs;
+                let packs = group.places();
                 let rows = packs.start * n.x..packs.end * n.x;
                 let (now, then) = (&mut out[rows.clone()], &mut self.room[rows.clone()]);
                 self.law.answer(Ask::Derivative, R::call(&block.part(packs.clone()), now));

@@ -145,7 +145,7 @@ impl<R: LaneNumber> Transition<R> {
 
     /// to = transition of x under inputs from `u.0` to `u.1`.
     fn apply(&self, sizes: (usize, usize), to: &mut [R], x: &[R], (from, until): (&[R], &[R])) {
-        moved(sizes, (&self.state, &self.start, &self.change), to, x, from, until);
+        moved(sizes, [&self.state, &self.start, &self.change], to, x, from, until);
     }
 }
 
@@ -153,13 +153,13 @@ per_lanes! {
     /// Sizes are those of states and inputs; the matrices belong to states, inputs, their change.
     fn moved[; R](
         sizes: (usize, usize),
-        by: (&[R], &[R], &[R]),
+        by: [&[R]; 3],
         to: &mut [R],
         x: &[R],
         from: &[R],
         until: &[R],
     ) {
-        let ((n, nu), (state, start, change)) = (sizes, by);
+        let ((n, nu), [state, start, change]) = (sizes, by);
         for (pack, to) in to.chunks_exact_mut(n).enumerate() {
             let x = &x[pack * n..][..n];
             let (from, until) = (&from[pack * nu..][..nu], &until[pack * nu..][..nu]);

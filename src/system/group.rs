@@ -1,5 +1,7 @@
 //! One group of lanes: the effects they have in common, and what these remember.
 
+use std::ops::Range;
+
 use crate::model::{Ask, Block, Law};
 
 use super::inputs::InputPaths;
@@ -87,6 +89,11 @@ impl<'a, R: EffectNumber> Group<'a, R> {
     /// This group's share of something with `n` values per pack.
     pub fn share<'b>(&self, all: &'b [R], n: usize) -> &'b [R] {
         &all[self.first * n..(self.first + self.packs) * n]
+    }
+
+    /// Its packs among those of all groups.
+    pub fn places(&self) -> Range<usize> {
+        self.first..self.first + self.packs
     }
 
     /// Puts parameters that an effect replaces into this group's share of them.
