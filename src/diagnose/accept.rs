@@ -1,8 +1,8 @@
 //! When an improvement is worth a cause, and when nothing is left to find.
 
 use super::dependence::dependence;
-use super::nuisance::{Refit, refit};
 use super::problem::{Grain, Model, Part};
+use super::refit::{Refit, refit};
 use super::search::{ACCEPT, Search};
 use super::sets::AS_GOOD;
 use super::stage::{Trial, trial};

@@ -6,8 +6,9 @@ use nalgebra::{DMatrix, DVector};
 
 use super::candidate::Wire;
 use super::finding::{Moved, Track};
-use super::nuisance::{Fitted, Key, Nuisance};
+use super::nuisance::{Key, Nuisance};
 use super::precision::standard_error;
+use super::refit::Fitted;
 use super::search::Found;
 use crate::model::Signals;
 

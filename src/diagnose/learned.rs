@@ -5,9 +5,9 @@ use std::sync::Arc;
 
 use super::dependence::{DEPENDS, dependence};
 use super::library::{Allowed, library};
-use super::nuisance::{Fitted, Refit, refit};
 use super::problem::{Added, Grain, Model, Part};
 use super::readback::read;
+use super::refit::{Fitted, Refit, refit};
 use super::search::{Search, Slot};
 use super::sets::{AS_GOOD, headed_by};
 use super::sketch::Drawing;

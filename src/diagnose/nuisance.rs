@@ -1,12 +1,10 @@
 //! What may explain a residual without being a finding: initial states, and parameters
 //! where they are free.
 
-use std::sync::Arc;
-
 use super::nominal::Nominal;
 use super::problem::{Grain, Job, Model, Part, Problem, Simulated, Span};
 use super::together::Together;
-use crate::optimise::{Settings, Unknown};
+use crate::optimise::Unknown;
 use crate::statistics::add_to_basis;
 
 /// One number of a model that can be moved.
@@ -170,120 +168,4 @@ pub(crate) fn set(model: &mut Model, key: Key, value: f64) {
         Key::Theta(p) => model.theta[p] = value,
         Key::Knob(a, i) => model.added[a].knobs[i] = value,
     }
-}
-
-/// How refits are run.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Refit {
-    pub settings: Settings,
-    pub grain: Grain,
-    /// Fit to the whole record instead of the part that is fitted.
-    pub whole: bool,
-}
-
-impl Refit {
-    /// For choosing between candidates.
-    pub fn search() -> Self {
-        let settings = Settings { iterations: 12, tolerance: 1e-4, difference: 2e-3 };
-        Self { settings, grain: Grain::Coarse, whole: false }
-    }
-
-    /// For the final numbers.
-    pub fn last() -> Self {
-        let settings = Settings { iterations: 25, tolerance: 1e-7, difference: 1e-4 };
-        Self { settings, grain: Grain::Fine, whole: true }
-    }
-}
-
-/// A fitted model.
-#[derive(Debug, Clone)]
-pub(crate) struct Fitted {
-    pub model: Model,
-    /// Keys that moved, and the derivatives of the residuals by them.
-    pub keys: Vec<Key>,
-    pub columns: Vec<Vec<f64>>,
-    pub residuals: Vec<f64>,
-}
-
-/// Fits many models at once, each from where it stands; `None` where a model cannot even be
-/// simulated at its start.
-pub(crate) fn refit(
-    problem: &Problem<'_>,
-    nuisance: &Nuisance,
-    models: &[Model],
-    how: Refit,
-) -> Vec<Option<Fitted>> {
-    use crate::optimise::Levenberg;
-    let part = if how.whole { Part::All } else { Part::Fit };
-    let span = if how.whole { Span::Whole } else { Span::Fit };
-    let mut runs: Vec<(Vec<Key>, Levenberg)> = models
-        .iter()
-        .map(|model| {
-            let keys = nuisance.keys(model);
-            let unknowns = keys.iter().map(|&key| nuisance.unknown(problem, model, key));
-            (keys.clone(), Levenberg::new(unknowns.collect(), how.settings))
-        })
-        .collect();
-    let moved = |model: &Model, keys: &[Key], point: &[f64]| {
-        let mut model = model.clone();
-        for (&key, &value) in keys.iter().zip(point) {
-            set(&mut model, key, value);
-        }
-        for added in &mut model.added {
-            added.knobs = added.cause.clipped(&added.knobs, problem.step(how.grain));
-        }
-        model
-    };
-    loop {
-        let mut jobs = vec![];
-        let mut counts = vec![];
-        for ((keys, run), model) in runs.iter_mut().zip(models) {
-            let mut points = run.propose();
-            if run.wants_columns() {
-                points = Together::new(keys).points(&run.point, &points);
-            }
-            counts.push(points.len());
-            for point in points {
-                let Some(job) = problem.job(&moved(model, keys, &point), how.grain) else {
-                    // a model that cannot be built has no residuals anywhere
-                    counts.pop();
-                    counts.push(0);
-                    break;
-                };
-                jobs.push(job);
-            }
-        }
-        if jobs.is_empty() {
-            break;
-        }
-        let mut answers = problem.run(&jobs, span).into_iter();
-        for ((keys, run), count) in runs.iter_mut().zip(counts) {
-            if count == 0 {
-                run.absorb(vec![None]);
-                continue;
-            }
-            let residual = |y: Option<Arc<Vec<Vec<f64>>>>| {
-                let r = problem.residual(&y?, part);
-                r.iter().all(|v| v.is_finite()).then_some(r)
-            };
-            let own: Vec<_> = answers.by_ref().take(count).map(residual).collect();
-            if run.wants_columns() {
-                let present = &run.residuals;
-                run.absorb(Together::new(keys).apart(keys, problem, part, present, own));
-            } else {
-                run.absorb(own);
-            }
-        }
-    }
-    runs.into_iter()
-        .zip(models)
-        .map(|((keys, run), model)| {
-            run.squares.is_finite().then(|| Fitted {
-                model: moved(model, &keys, &run.point),
-                keys,
-                columns: run.columns,
-                residuals: run.residuals,
-            })
-        })
-        .collect()
 }

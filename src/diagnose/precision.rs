@@ -2,8 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use super::nuisance::{Fitted, Key, Nuisance};
+use super::nuisance::{Key, Nuisance};
 use super::problem::Problem;
+use super::refit::Fitted;
 use crate::statistics::{self, dot};
 
 /// Covariance of everything that moved.

@@ -3,8 +3,9 @@
 
 use super::finding::Track;
 use super::finished::Finished;
-use super::nuisance::{Nuisance, Refit, refit};
+use super::nuisance::Nuisance;
 use super::problem::{Grain, Model, Part};
+use super::refit::{Refit, refit};
 use super::sets::AS_GOOD;
 use super::track::Tracks;
 use crate::statistics::dot;

@@ -4,8 +4,8 @@
 
 use std::sync::Arc;
 
-use super::nuisance::{Fitted, Refit, refit};
 use super::problem::{Grain, Model, Part};
+use super::refit::{Fitted, Refit, refit};
 use super::search::{Search, Slot};
 use super::sets::{AS_GOOD, headed_by};
 use super::sketch::{Drawing, NAME};

@@ -4,9 +4,10 @@
 use std::sync::Arc;
 
 use super::candidate::{Candidate, Wire};
-use super::nuisance::{Nuisance, Refit, refit};
+use super::nuisance::Nuisance;
 use super::probes::with_candidate;
 use super::problem::{Grain, Model, Part, Problem, Simulated, Span};
+use super::refit::{Refit, refit};
 use super::scan::{scan_all, squares, starting_points};
 use super::screen::{Scored, Screen, screen};
 use crate::statistics::{corrected_score, dot};

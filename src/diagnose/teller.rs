@@ -13,9 +13,9 @@ use super::finding::{
 use super::finished::Finished;
 use super::floor::{self, predicted, repeated};
 use super::nominal::Nominal;
-use super::nuisance::{Refit, refit};
 use super::problem::{Grain, Model, Part, Problem};
 use super::records::Joined;
+use super::refit::{Refit, refit};
 use super::score::{Counted, TestData, gain};
 use super::sketch;
 use super::surface;

@@ -9,9 +9,10 @@ use super::finding::{Moved, Track};
 use super::finished::{Finished, moved_together};
 use super::library::Allowed;
 use super::nominal::Nominal;
-use super::nuisance::{Nuisance, Refit, refit};
+use super::nuisance::Nuisance;
 use super::precision::covariance;
 use super::problem::{Grain, Model, Part, Problem};
+use super::refit::{Refit, refit};
 use super::search::{Found, Search, Slot};
 use crate::watch::Watch;
 

@@ -1,0 +1,184 @@
+//! Fits of models: knobs, and what is nuisance beside them.
+
+use std::sync::Arc;
+
+use super::nuisance::{Key, Nuisance, set};
+use super::problem::{Grain, Model, Part, Problem, Span};
+use super::restart::restarted;
+use super::together::Together;
+use crate::optimise::{Levenberg, Settings};
+use crate::statistics::dot;
+
+/// Segments from which on their starts are tried anew.
+const MANY: usize = 8;
+/// Times that this is done at most, and the fall of the sum of squares that makes it worth
+/// doing again.
+const AGAIN: usize = 6;
+const WORTH: f64 = 0.97;
+
+/// How refits are run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Refit {
+    pub settings: Settings,
+    pub grain: Grain,
+    /// Fit to the whole record instead of the part that is fitted.
+    pub whole: bool,
+}
+
+impl Refit {
+    /// For choosing between candidates.
+    pub fn search() -> Self {
+        let settings = Settings { iterations: 12, tolerance: 1e-4, difference: 2e-3 };
+        Self { settings, grain: Grain::Coarse, whole: false }
+    }
+
+    /// For the final numbers.
+    pub fn last() -> Self {
+        let settings = Settings { iterations: 25, tolerance: 1e-7, difference: 1e-4 };
+        Self { settings, grain: Grain::Fine, whole: true }
+    }
+
+    /// What is fitted.
+    pub fn part(self) -> Part {
+        if self.whole { Part::All } else { Part::Fit }
+    }
+
+    /// What has to be simulated for that.
+    pub fn span(self) -> Span {
+        if self.whole { Span::Whole } else { Span::Fit }
+    }
+}
+
+/// A fitted model.
+#[derive(Debug, Clone)]
+pub(crate) struct Fitted {
+    pub model: Model,
+    /// Keys that moved, and the derivatives of the residuals by them.
+    pub keys: Vec<Key>,
+    pub columns: Vec<Vec<f64>>,
+    pub residuals: Vec<f64>,
+}
+
+impl Fitted {
+    /// Sum of squared residuals.
+    fn squares(&self) -> f64 {
+        dot(&self.residuals, &self.residuals)
+    }
+}
+
+/// Fits many models at once, each from where it stands; `None` where a model cannot even be
+/// simulated at its start.
+pub(crate) fn refit(
+    problem: &Problem<'_>,
+    nuisance: &Nuisance,
+    models: &[Model],
+    how: Refit,
+) -> Vec<Option<Fitted>> {
+    let mut fitted = once(problem, nuisance, models, how);
+    if nuisance.segments < MANY {
+        return fitted;
+    }
+    let mut open: Vec<usize> = (0..models.len()).collect();
+    for _ in 0..AGAIN {
+        let present = |m: &usize| Some((*m, fitted[*m].as_ref()?.model.clone()));
+        let (of, present): (Vec<usize>, Vec<Model>) = open.iter().filter_map(present).unzip();
+        let moved = restarted(problem, nuisance, present, how);
+        let moved = of.into_iter().zip(moved).filter_map(|(m, moved)| Some((m, moved?)));
+        let (of, moved): (Vec<usize>, Vec<Model>) = moved.unzip();
+        open.clear();
+        for (m, again) in of.into_iter().zip(once(problem, nuisance, &moved, how)) {
+            let (Some(again), Some(before)) = (again, &fitted[m]) else { continue };
+            let (sum, least) = (again.squares(), before.squares());
+            if sum < WORTH * least {
+                open.push(m);
+            }
+            if sum < least {
+                fitted[m] = Some(again);
+            }
+        }
+        if open.is_empty() {
+            break;
+        }
+    }
+    fitted
+}
+
+/// One fit of each, to the minimum that is next.
+fn once(
+    problem: &Problem<'_>,
+    nuisance: &Nuisance,
+    models: &[Model],
+    how: Refit,
+) -> Vec<Option<Fitted>> {
+    let (part, span) = (how.part(), how.span());
+    let mut runs: Vec<(Vec<Key>, Levenberg)> = models
+        .iter()
+        .map(|model| {
+            let keys = nuisance.keys(model);
+            let unknowns = keys.iter().map(|&key| nuisance.unknown(problem, model, key));
+            (keys.clone(), Levenberg::new(unknowns.collect(), how.settings))
+        })
+        .collect();
+    let moved = |model: &Model, keys: &[Key], point: &[f64]| {
+        let mut model = model.clone();
+        for (&key, &value) in keys.iter().zip(point) {
+            set(&mut model, key, value);
+        }
+        for added in &mut model.added {
+            added.knobs = added.cause.clipped(&added.knobs, problem.step(how.grain));
+        }
+        model
+    };
+    loop {
+        let mut jobs = vec![];
+        let mut counts = vec![];
+        for ((keys, run), model) in runs.iter_mut().zip(models) {
+            let mut points = run.propose();
+            if run.wants_columns() {
+                points = Together::new(keys).points(&run.point, &points);
+            }
+            counts.push(points.len());
+            for point in points {
+                let Some(job) = problem.job(&moved(model, keys, &point), how.grain) else {
+                    // a model that cannot be built has no residuals anywhere
+                    counts.pop();
+                    counts.push(0);
+                    break;
+                };
+                jobs.push(job);
+            }
+        }
+        if jobs.is_empty() {
+            break;
+        }
+        let mut answers = problem.run(&jobs, span).into_iter();
+        for ((keys, run), count) in runs.iter_mut().zip(counts) {
+            if count == 0 {
+                run.absorb(vec![None]);
+                continue;
+            }
+            let residual = |y: Option<Arc<Vec<Vec<f64>>>>| {
+                let r = problem.residual(&y?, part);
+                r.iter().all(|v| v.is_finite()).then_some(r)
+            };
+            let own: Vec<_> = answers.by_ref().take(count).map(residual).collect();
+            if run.wants_columns() {
+                let present = &run.residuals;
+                run.absorb(Together::new(keys).apart(keys, problem, part, present, own));
+            } else {
+                run.absorb(own);
+            }
+        }
+    }
+    runs.into_iter()
+        .zip(models)
+        .map(|((keys, run), model)| {
+            run.squares.is_finite().then(|| Fitted {
+                model: moved(model, &keys, &run.point),
+                keys,
+                columns: run.columns,
+                residuals: run.residuals,
+            })
+        })
+        .collect()
+}
