@@ -46,12 +46,12 @@ pub fn run(args: &Simulate, look: &Look) -> Result<u8, Failure> {
 
 /// One line on how good a simulation is.
 fn sentence(metrics: &Metrics, unit: &str) -> String {
-    format!(
-        "RMSE {} {unit}, NRMSE {:.4}, fit {:.1} %",
-        number(metrics.rmse, None),
-        metrics.nrmse,
-        metrics.fit_percent
-    )
+    let rmse = number(metrics.rmse, None);
+    if metrics.nrmse.is_infinite() {
+        return format!("RMSE {rmse} {unit}, no NRMSE: what was measured is constant");
+    }
+    let Metrics { nrmse, fit_percent, .. } = metrics;
+    format!("RMSE {rmse} {unit}, NRMSE {nrmse:.4}, fit {fit_percent:.1} %")
 }
 
 /// The simulated outputs as a record; what is not finite is left out.

@@ -19,11 +19,11 @@ const ASKED: usize = 8;
 impl Run<'_> {
     /// Largest change of any state, in units of its size, that a small change of the start has
     /// made up to each sample of a stretch, in units of that change.
-    fn growth(&self, range: std::ops::Range<usize>, start: &[f64]) -> Vec<f64> {
+    fn growth(&self, range: std::ops::Range<usize>, origin: i64, start: &[f64]) -> Vec<f64> {
         let drive = Drive {
             inputs: self.drive.inputs.iter().map(|u| u[..range.end].to_vec()).collect(),
             segments: std::iter::once(range.clone()).collect(),
-            origins: vec![0],
+            origins: vec![origin],
         };
         let scales = self.state_scales(&drive, start);
         let states = |x: &[f64]| {
@@ -79,7 +79,7 @@ impl Run<'_> {
     /// the data, and followed for `reach` samples.
     fn grown(
         &self,
-        segment: &std::ops::Range<usize>,
+        (segment, origin): (&std::ops::Range<usize>, i64),
         length: usize,
         reach: usize,
     ) -> Vec<Vec<f64>> {
@@ -87,8 +87,8 @@ impl Run<'_> {
         (segment.start..=segment.end - reach)
             .step_by(step)
             .map(|from| {
-                let own = self.patient_start(from..from + length, segment.start as i64);
-                self.growth(from..from + reach, &own)
+                let own = self.patient_start(from..from + length, origin);
+                self.growth(from..from + reach, origin, &own)
             })
             .collect()
     }
@@ -99,7 +99,9 @@ impl Run<'_> {
     /// What grows like a power of time, as an integrator's offset does, hardly grows in units of
     /// how far the states move meanwhile; an unstable or chaotic system's error multiplies.
     pub fn horizon(&self) -> Option<usize> {
-        let segment = self.drive.segments.iter().max_by_key(|s| s.len())?.clone();
+        let segments = self.drive.segments.iter().zip(&self.drive.origins);
+        let (segment, origin) = segments.max_by_key(|(s, _)| s.len())?;
+        let (segment, origin) = (segment.clone(), *origin);
         let shortest = SHORTEST.max(5 * self.plan.sizes.x);
         let longest = segment.len() / 4;
         let quantile = |mut sorted: Vec<f64>, at: f64| {
@@ -120,8 +122,8 @@ impl Run<'_> {
             for (&from, start) in places.iter().zip(&mut starts) {
                 let stretch = from..from + length;
                 let guess = std::mem::take(start);
-                *start = self.start_from(stretch.clone(), segment.start as i64, length, guess);
-                ends.extend(self.growth(stretch, start).last());
+                *start = self.start_from(stretch.clone(), origin, length, guess);
+                ends.extend(self.growth(stretch, origin, start).last());
             }
             let grown = quantile(ends, 0.5)?;
             if grown > BEARABLE && grown > EXPONENTIAL * before {
@@ -136,7 +138,7 @@ impl Run<'_> {
         }
         for _ in 0..2 {
             let reach = (2 * length).min(segment.len());
-            let within = self.grown(&segment, length, reach).into_iter().map(|grown| {
+            let within = self.grown((&segment, origin), length, reach).into_iter().map(|grown| {
                 grown.iter().position(|g| *g > BEARABLE).unwrap_or(grown.len()) as f64
             });
             // three stretches of four bear that length

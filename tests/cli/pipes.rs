@@ -61,6 +61,19 @@ fn quiet_is_quiet_and_nothing_is_coloured() {
 }
 
 #[test]
+fn a_constant_measurement_has_no_relative_error() {
+    let folder = scratch("constant");
+    std::fs::write(folder.join("m.toml"), MODEL).unwrap();
+    record(&folder, "d.csv", "m.toml", 300, 0.01);
+    let text = std::fs::read_to_string(folder.join("d.csv")).unwrap();
+    let (head, rows) = text.split_once('\n').unwrap();
+    let rows = rows.lines().map(|row| format!("{},0.5\n", row.rsplit_once(',').unwrap().0));
+    std::fs::write(folder.join("d.csv"), format!("{head}\n{}", rows.collect::<String>())).unwrap();
+    let ran = run(&folder, "simulate --model m.toml --data d.csv").exits(0);
+    assert!(ran.err.contains("constant") && !ran.err.contains("inf"), "{}", ran.err);
+}
+
+#[test]
 fn results_that_cannot_be_written() {
     let folder = scratch("unwritable");
     std::fs::write(folder.join("m.toml"), MODEL).unwrap();
