@@ -156,6 +156,60 @@ fn a_right_model_of_a_chaotic_plant_is_left_alone() {
     assert_eq!(finding.verdict, Verdict::NothingFound, "{finding}");
 }
 
+type Hidden = Box<dyn Fn([f64; 2]) -> f64>;
+
+/// The table of `docs/results.md`.
+#[test]
+#[ignore = "takes minutes: run it by name, with --nocapture, for the table"]
+fn what_is_hidden_in_plants_that_do_not_forget() {
+    let dry = |level: f64| -> Hidden { Box::new(move |x| -level * (x[1] / 0.02).tanh()) };
+    let drag = |c: f64| -> Hidden { Box::new(move |x| -c * x[1] * x[1].abs()) };
+    let power = |c: f64, n: i32| -> Hidden { Box::new(move |x| -c * x[0].powi(n)) };
+    let held: [(&str, &str, f64, Hidden); 8] = [
+        ("coulomb_friction", "level", 0.08, dry(0.08)),
+        ("coulomb_friction", "level", 0.08, dry(0.08)),
+        ("coulomb_friction", "level", 0.03, dry(0.03)),
+        ("coulomb_friction", "level", 0.01, dry(0.01)),
+        ("drag", "coefficient", 0.02, drag(0.02)),
+        ("cubic", "coefficient", 0.5, power(0.5, 3)),
+        ("bias", "value", 0.02, Box::new(|_| 0.02)),
+        ("parameter", "value", 0.07, Box::new(|x| -0.02 * x[1])),
+    ];
+    let wells: [(&str, &str, f64, Hidden); 4] = [
+        ("quintic", "coefficient", 0.05, power(0.05, 5)),
+        ("drag", "coefficient", 0.03, drag(0.03)),
+        ("coulomb_friction", "level", 0.06, dry(0.06)),
+        ("coulomb_friction", "level", 0.06, dry(0.06)),
+    ];
+    let held = held
+        .iter()
+        .zip(41..)
+        .map(|(case, seed)| ("pendulum", 0.002, case, diagnosed(MODEL, &held_up(&case.3, seed))));
+    let wells = wells.iter().zip(51..).map(|(case, seed)| {
+        ("two wells", 0.01, case, diagnosed(TWO_WELLS, &between_wells(&case.3, seed)))
+    });
+    println!(
+        "| plant | hidden | | found | RMSE before | after |\n| --- | --- | --- | --- | --- | --- |"
+    );
+    let (mut named, mut left) = (0, vec![]);
+    for (plant, noise, (effect, coefficient, value, _), finding) in held.chain(wells) {
+        let rmse = |of: &std::collections::BTreeMap<String, lacuna::evaluate::Metrics>| {
+            of.values().next().unwrap().rmse / noise
+        };
+        let (before, after) = (rmse(&finding.before.test), rmse(&finding.after.test));
+        let told: Vec<String> = finding.causes.iter().map(|cause| cause.sentence.clone()).collect();
+        println!(
+            "| {plant} | {effect}, {coefficient} {value} | {} | {} | {before:.1} | {after:.2} |",
+            finding.causes[0].effect,
+            told.join(" ")
+        );
+        named += usize::from(finding.causes[0].effect == *effect);
+        left.push(after);
+    }
+    assert!(named >= 10, "{named} of 12");
+    assert!(left.iter().all(|after| *after < 1.1), "{left:?}");
+}
+
 #[test]
 fn the_parameters_of_an_unstable_plant_are_estimated() {
     let wrong =
