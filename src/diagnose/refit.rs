@@ -10,7 +10,7 @@ use crate::optimise::{Levenberg, Settings};
 use crate::statistics::dot;
 
 /// Segments from which on their starts are tried anew.
-const MANY: usize = 8;
+pub(super) const MANY: usize = 8;
 /// Times that this is done at most, and the fall of the sum of squares that makes it worth
 /// doing again.
 const AGAIN: usize = 6;

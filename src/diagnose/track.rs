@@ -12,14 +12,14 @@ use super::nominal::Nominal;
 use super::nuisance::Nuisance;
 use super::precision::covariance;
 use super::problem::{Grain, Model, Part, Problem};
-use super::refit::{Refit, refit};
+use super::refit::{Fitted, MANY, Refit, refit};
 use super::search::{Found, Search, Slot};
 use crate::watch::Watch;
 
 /// Score at which moved parameters that leave nothing beat a single cause.
 const ENOUGH: f64 = 1.0;
 /// Causes from which on the free track is searched from its own beginning.
-const MANY: usize = 3;
+const SEVERAL: usize = 3;
 /// Moved parameters, at most, that may stand in for a cause.
 const FEW: usize = 2;
 /// Share of the mean square left at which wrong parameters are no suspects any more.
@@ -75,7 +75,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
                 None => (trusted, None),
             });
         }
-        let settled = found.slots.len() < MANY && !found.full;
+        let settled = found.slots.len() < SEVERAL && !found.full;
         let trusted = self.finish(Track::ParametersTrusted, found, held)?;
         if self.watch.stopped() || free.free.is_empty() {
             return Some((trusted, None));
@@ -189,12 +189,35 @@ impl<'a, 'b> Tracks<'a, 'b> {
         self.finish(Track::ParametersFree, found, free.clone())
     }
 
-    /// The final fit on all data.
-    pub fn finish(&mut self, track: Track, found: Found, nuisance: Nuisance) -> Option<Finished> {
-        let fitted =
-            refit(self.problem, &nuisance, std::slice::from_ref(&found.model), Refit::last())
-                .swap_remove(0)?;
+    /// A model fitted to all data, and its outputs.
+    fn fitted_to_all(
+        &self,
+        nuisance: &Nuisance,
+        model: &Model,
+    ) -> Option<(Fitted, Arc<Vec<Vec<f64>>>)> {
+        let model = std::slice::from_ref(model);
+        let fitted = refit(self.problem, nuisance, model, Refit::last()).swap_remove(0)?;
         let y = self.problem.simulate(&fitted.model, Grain::Fine)?;
+        Some((fitted, y))
+    }
+
+    /// The final fit on all data.
+    pub fn finish(
+        &mut self,
+        track: Track,
+        mut found: Found,
+        nuisance: Nuisance,
+    ) -> Option<Finished> {
+        let (mut fitted, mut y) = self.fitted_to_all(&nuisance, &found.model)?;
+        if nuisance.segments >= MANY {
+            // the end of a stretch that was not fitted yet may be far off, and no fault of the data
+            self.problem.flag_spikes(&y);
+            let spikes = self.problem.spikes();
+            if spikes != found.spikes {
+                (fitted, y) = self.fitted_to_all(&nuisance, &fitted.model)?;
+                found.spikes = spikes;
+            }
+        }
         let covariance = covariance(self.problem, &nuisance, &fitted);
         let moved_together = moved_together(&nuisance, &fitted, covariance.as_ref());
         let dependence = dependence(self.problem, self.nominal, &y);
