@@ -28,6 +28,8 @@ pub struct Figure {
     y: (String, Scale),
     height: f64,
     items: Vec<(Item, &'static str, String)>,
+    /// What stands at 1, 2, .. along x, instead of numbers.
+    names: Vec<String>,
 }
 
 const WIDTH: f64 = 760.0;
@@ -44,7 +46,15 @@ impl Figure {
             y: (y.into(), Scale::Linear),
             height: 260.0,
             items: vec![],
+            names: vec![],
         }
+    }
+
+    /// The same with names at 1, 2, .. along x.
+    #[must_use]
+    pub fn named(mut self, names: &[String]) -> Self {
+        self.names = names.to_vec();
+        self
     }
 
     /// The same with other scales.
@@ -122,6 +132,15 @@ impl Figure {
         Some((x.widened(if dots { 0.02 } else { 0.0 })?, y.widened(0.05)?))
     }
 
+    /// Where something stands along x, and what.
+    fn marks(&self, range: (f64, f64)) -> Vec<(f64, String)> {
+        if self.names.is_empty() {
+            let all = ticks(range, self.x.1, 7).into_iter();
+            return all.map(|tick| (tick, label(tick, range, self.x.1))).collect();
+        }
+        self.names.iter().zip(1..).map(|(name, at)| (f64::from(at), name.clone())).collect()
+    }
+
     /// The plot as a file of its own, with its colours in it.
     pub fn file(&self) -> String {
         let style = include_str!("style.css");
@@ -154,14 +173,14 @@ impl Figure {
             self.height,
             escape(&format!("{} against {}", self.y.0, self.x.0))
         );
-        for tick in ticks(xr, self.x.1, 7) {
+        for (tick, text) in self.marks(xr) {
             let x = px(tick);
             let _ = write!(
                 s,
                 "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{top}\" y2=\"{:.1}\"/><text class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
                 top + h,
                 top + h + 16.0,
-                label(tick, xr, self.x.1)
+                escape(&text)
             );
         }
         for tick in ticks(yr, self.y.1, 5) {
@@ -338,7 +357,13 @@ fn ticks((low, high): (f64, f64), scale: Scale, about: usize) -> Vec<f64> {
     if scale == Scale::Log {
         let (first, last) = (low.log10().ceil() as i32, high.log10().floor() as i32);
         let step = ((last - first) / about as i32).max(1) as usize;
-        return (first..=last).step_by(step).map(|e| 10f64.powi(e)).collect();
+        let powers: Vec<f64> = (first..=last).step_by(step).map(|e| 10f64.powi(e)).collect();
+        if powers.len() > 2 {
+            return powers;
+        }
+        let decades = (first - 1..=last).map(|e| 10f64.powi(e));
+        let all = decades.flat_map(|power| [1.0, 2.0, 5.0].map(|m| m * power));
+        return all.filter(|tick| (low..=high).contains(tick)).collect();
     }
     let raw = (high - low) / about as f64;
     let power = 10f64.powf(raw.log10().floor());
@@ -398,4 +423,18 @@ pub fn thinned(points: &[(f64, f64)], stretches: usize) -> Vec<(f64, f64)> {
         }
     }
     kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_axis_of_few_powers_of_ten_is_marked_between_them() {
+        let about = |range| ticks(range, Scale::Log, 5);
+        assert_eq!(about((0.025, 0.3)), [0.05, 0.1, 0.2]);
+        assert_eq!(about((0.5, 2e3)), [1.0, 10.0, 100.0, 1000.0]);
+        let figure = Figure::new("start", "").named(&["random".into()]);
+        assert!(figure.dots("", "", vec![(1.0, 2.0, 0.0)]).svg().contains(">random<"));
+    }
 }

@@ -64,7 +64,8 @@ impl<'a> StudyReport<'a> {
     fn boxes(&self, page: &mut Page) {
         for (o, (name, _)) in self.of.frame.outputs.iter().enumerate() {
             page.heading(&format!("Simulation RMSE of {name} on the test record"));
-            let mut figure = Figure::new("start", &format!("RMSE{}", self.unit()));
+            let mut figure =
+                Figure::new("start", &format!("RMSE{}", self.unit())).named(&self.of.frame.starts);
             for (number, start) in self.of.frame.starts.iter().enumerate() {
                 let values = |d: &super::Done| d.test.get(o).copied().flatten();
                 let all: Vec<f64> = self.of.of_start(number).filter_map(values).collect();
