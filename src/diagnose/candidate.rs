@@ -3,6 +3,11 @@
 use crate::effect::{CandidateEffect, EffectCard, Named, Role};
 use crate::system::{AlsoInto, Placed, Route};
 
+/// Natural logarithms of the number of causes to choose from, and of the values that a record
+/// tells apart within the range of a number.
+const CHOICE: f64 = 5.0;
+pub(super) const NUMBER: f64 = 4.0;
+
 /// How a candidate is wired into a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Wire {
@@ -105,6 +110,15 @@ impl Candidate {
             true if self.is_learned() => 4,
             true => 3,
             false => 1,
+        }
+    }
+
+    /// Natural logarithm of how many causes there are that take as much to say: it is one of some
+    /// hundred, and every number is read to a part of its range.
+    pub fn cost(&self) -> f64 {
+        match self.wire {
+            Wire::Parameter(_) => NUMBER,
+            _ => CHOICE + NUMBER * self.unknowns() as f64,
         }
     }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::candidate::Wire;
+use super::candidate::{NUMBER, Wire};
 use super::finding::{Moved, Track};
 use super::nuisance::{Key, Nuisance};
 use super::precision::standard_error;
@@ -14,11 +14,6 @@ use crate::model::Signals;
 
 /// Standard errors beyond which a parameter counts as moved.
 const MOVED: f64 = 3.0;
-/// Natural logarithms of the number of causes to choose from, and of the values that a record
-/// tells apart within the range of a number.
-const CHOICE: f64 = 5.0;
-const NUMBER: f64 = 4.0;
-
 /// One track, finished.
 pub(crate) struct Finished {
     pub track: Track,
@@ -102,13 +97,9 @@ impl Finished {
         causes.filter(|added| !matches!(added.cause.wire, Wire::Parameter(_))).count()
     }
 
-    /// Natural logarithm of how many stories there are that are as long: a cause is one of some
-    /// hundred, and every number is read to a part of its range.
+    /// Natural logarithm of how many stories there are that are as long.
     pub(super) fn cost(&self) -> f64 {
-        let causes = self.fitted.model.added.iter().map(|added| match added.cause.wire {
-            Wire::Parameter(_) => NUMBER,
-            _ => CHOICE + NUMBER * added.cause.unknowns() as f64,
-        });
+        let causes = self.fitted.model.added.iter().map(|added| added.cause.cost());
         causes.sum::<f64>() + NUMBER * self.count_moved() as f64
     }
 

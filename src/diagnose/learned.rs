@@ -7,14 +7,14 @@ use super::dependence::{DEPENDS, dependence};
 use super::library::{Allowed, library};
 use super::problem::{Added, Grain, Model, Part};
 use super::readback::read;
-use super::refit::{Fitted, Refit, refit};
+use super::refit::{Refit, refit};
 use super::search::{Search, Slot};
 use super::sets::{AS_GOOD, headed_by};
 use super::sketch::Drawing;
 use super::stage::{REFITTED, Trial, stage, trial};
 use super::surface::{NAME, Surface};
 use super::train::start;
-use crate::statistics::{corrected_score, dot};
+use crate::statistics::corrected_score;
 
 /// Laws that are trained, how many steps before the best of them is known, and the seeds of its
 /// first weights.
@@ -121,17 +121,16 @@ impl Search<'_, '_> {
         let starts: Vec<Model> = surfaces.iter().filter_map(|s| first(s, SEEDS[0])).collect();
         let mut few = Refit::search();
         few.settings.iterations = FEW;
-        let squares = |f: &Fitted| dot(&f.residuals, &f.residuals);
         let (surface, best) = refit(self.problem, &self.nuisance, &starts, few)
             .into_iter()
             .zip(&surfaces)
             .filter_map(|(fitted, surface)| Some((surface, fitted?)))
-            .min_by(|a, b| squares(&a.1).total_cmp(&squares(&b.1)))?;
+            .min_by(|a, b| a.1.squares().total_cmp(&b.1.squares()))?;
         let starts: Vec<Model> =
             std::iter::once(best.model).chain(first(surface, SEEDS[1])).collect();
         let fitted = refit(self.problem, &self.nuisance, &starts, Refit::search());
         let best = fitted.into_iter().flatten();
-        let best = best.min_by(|a, b| squares(a).total_cmp(&squares(b)))?.model;
+        let best = best.min_by(|a, b| a.squares().total_cmp(&b.squares()))?.model;
         let learned = self.problem.simulate(&best, Grain::Coarse);
         let learned = trial(self.problem, &surface.cause, best, learned, false)?;
         Some(Learned { without: y, trials: vec![learned], tried })

@@ -31,6 +31,12 @@ impl Problem<'_> {
         a.iter().chain(b).cloned().flatten()
     }
 
+    /// In which segment each sample of a part is.
+    pub fn segments_of(&self, part: Part) -> impl Iterator<Item = usize> + '_ {
+        let segments = &self.drive.segments;
+        self.samples(part).map(|k| segments.partition_point(|segment| segment.end <= k))
+    }
+
     /// The samples that count in a part, as stretches without a break, in order.
     pub fn stretches(&self, part: Part) -> Vec<Range<usize>> {
         let mut samples: Vec<usize> = self.samples(part).collect();

@@ -51,6 +51,7 @@ mod shown;
 mod sketch;
 mod smooth;
 mod spikes;
+mod split;
 mod stage;
 mod stretches;
 mod surface;

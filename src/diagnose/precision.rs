@@ -5,7 +5,7 @@ use nalgebra::DMatrix;
 use super::nuisance::{Key, Nuisance};
 use super::problem::Problem;
 use super::refit::Fitted;
-use crate::statistics::{self, dot};
+use crate::statistics;
 
 /// Covariance of everything that moved.
 pub(crate) fn covariance(
@@ -24,7 +24,7 @@ pub(crate) fn covariance(
         .zip(&unknowns)
         .map(|(column, u)| column.iter().map(|v| v * u.scale).collect())
         .collect();
-    let variance = dot(&fitted.residuals, &fitted.residuals) / fitted.residuals.len().max(1) as f64;
+    let variance = fitted.squares() / fitted.residuals.len().max(1) as f64;
     let ridge = |u: &crate::optimise::Unknown| {
         u.prior.map_or(0.0, |(_, deviation)| variance * (u.scale / deviation).powi(2))
     };

@@ -304,6 +304,13 @@ impl<'a> Problem<'a> {
         results
     }
 
+    /// The same, where some simulations cannot even be built.
+    pub fn run_built(&self, jobs: &[Option<Job>], span: Span) -> Vec<Simulated> {
+        let built: Vec<Job> = jobs.iter().flatten().cloned().collect();
+        let mut answers = self.run(&built, span).into_iter();
+        jobs.iter().map(|job| job.as_ref().and_then(|_| answers.next().flatten())).collect()
+    }
+
     fn run_piece(&self, jobs: &[Job], piece: Vec<usize>, drive: &Drive) -> Vec<(usize, Simulated)> {
         let mut groups: Vec<(Arc<Plan>, Vec<Lane>, Vec<usize>)> = vec![];
         for i in piece {

@@ -61,7 +61,7 @@ pub(crate) struct Fitted {
 
 impl Fitted {
     /// Sum of squared residuals.
-    fn squares(&self) -> f64 {
+    pub fn squares(&self) -> f64 {
         dot(&self.residuals, &self.residuals)
     }
 }
@@ -80,9 +80,9 @@ pub(crate) fn refit(
     }
     let mut open: Vec<usize> = (0..models.len()).collect();
     for _ in 0..AGAIN {
-        let present = |m: &usize| Some((*m, fitted[*m].as_ref()?.model.clone()));
-        let (of, present): (Vec<usize>, Vec<Model>) = open.iter().filter_map(present).unzip();
-        let moved = restarted(problem, nuisance, present, how);
+        let present = |m: &usize| Some((*m, fitted[*m].as_ref()?));
+        let (of, present): (Vec<usize>, Vec<&Fitted>) = open.iter().filter_map(present).unzip();
+        let moved = restarted(problem, nuisance, &present, how);
         let moved = of.into_iter().zip(moved).filter_map(|(m, moved)| Some((m, moved?)));
         let (of, moved): (Vec<usize>, Vec<Model>) = moved.unzip();
         open.clear();

@@ -3,7 +3,7 @@
 
 use super::nuisance::{Key, Nuisance, get, set};
 use super::problem::{Job, Model, Problem};
-use super::refit::Refit;
+use super::refit::{Fitted, Refit};
 
 /// Changes of a state that are tried, in units of its spread.
 const TRIED: [f64; 10] = [-0.3, -0.1, -0.03, -0.01, -0.003, 0.003, 0.01, 0.03, 0.1, 0.3];
@@ -16,12 +16,23 @@ const LESS: f64 = 0.99;
 pub(super) fn restarted(
     problem: &Problem<'_>,
     nuisance: &Nuisance,
-    models: Vec<Model>,
+    fits: &[&Fitted],
     how: Refit,
 ) -> Vec<Option<Model>> {
-    let mut better = vec![false; models.len()];
-    let mut best = models;
-    let mut least = squares(problem, nuisance, &best, how);
+    let of: Vec<usize> = problem.segments_of(how.part()).collect();
+    // sums of squares over every stretch
+    let squares = |residuals: &[f64]| {
+        let mut sums = vec![0.0; nuisance.segments];
+        for r in residuals.chunks(of.len().max(1)) {
+            for (&s, r) in of.iter().zip(r) {
+                sums.get_mut(s).into_iter().for_each(|sum| *sum += r * r);
+            }
+        }
+        sums
+    };
+    let mut better = vec![false; fits.len()];
+    let mut best: Vec<Model> = fits.iter().map(|fit| fit.model.clone()).collect();
+    let mut least: Vec<Vec<f64>> = fits.iter().map(|fit| squares(&fit.residuals)).collect();
     for state in (0..ROUNDS).flat_map(|_| 0..nuisance.initial.len()) {
         let moved = |model: &Model, by: f64| {
             let mut moved = model.clone();
@@ -33,45 +44,18 @@ pub(super) fn restarted(
         // a run moves the state in all stretches at once: each takes what is best for it
         let tried: Vec<Model> =
             best.iter().flat_map(|model| TRIED.map(|by| moved(model, by))).collect();
-        let sums = squares(problem, nuisance, &tried, how);
-        for (i, (tried, sums)) in tried.iter().zip(&sums).enumerate() {
-            let m = i / TRIED.len();
-            for (s, (sum, least)) in sums.iter().zip(&mut least[m]).enumerate() {
-                if *sum < LESS * *least {
-                    (*least, better[m]) = (*sum, true);
+        let jobs: Vec<Option<Job>> = tried.iter().map(|m| problem.job(m, how.grain)).collect();
+        let answers = problem.run_built(&jobs, how.span());
+        for (i, (tried, y)) in tried.iter().zip(answers).enumerate() {
+            let (Some(y), m) = (y, i / TRIED.len()) else { continue };
+            let sums = squares(&problem.residual(&y, how.part()));
+            for (s, (sum, least)) in sums.into_iter().zip(&mut least[m]).enumerate() {
+                if sum < LESS * *least {
+                    (*least, better[m]) = (sum, true);
                     best[m].starts[s][state] = tried.starts[s][state];
                 }
             }
         }
     }
     best.into_iter().zip(better).map(|(model, better)| better.then_some(model)).collect()
-}
-
-/// Sums of squares of every model over every stretch; infinite where it diverges.
-fn squares(
-    problem: &Problem<'_>,
-    nuisance: &Nuisance,
-    models: &[Model],
-    how: Refit,
-) -> Vec<Vec<f64>> {
-    let segments = &problem.drive.segments;
-    let of: Vec<usize> = problem
-        .samples(how.part())
-        .map(|k| segments.partition_point(|segment| segment.end <= k))
-        .collect();
-    let jobs: Vec<Option<Job>> = models.iter().map(|model| problem.job(model, how.grain)).collect();
-    let known: Vec<Job> = jobs.iter().flatten().cloned().collect();
-    let mut answers = problem.run(&known, how.span()).into_iter();
-    let each = |job: Option<Job>| {
-        let Some(y) = job.and_then(|_| answers.next().flatten()) else {
-            return vec![f64::INFINITY; nuisance.segments];
-        };
-        let mut sums = vec![0.0; segments.len()];
-        for r in problem.residual(&y, how.part()).chunks(of.len().max(1)) {
-            of.iter().zip(r).for_each(|(&s, r)| sums[s] += r * r);
-        }
-        sums.truncate(nuisance.segments);
-        sums
-    };
-    jobs.into_iter().map(each).collect()
 }

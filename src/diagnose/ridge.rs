@@ -8,7 +8,6 @@ use super::problem::{Grain, Model, Part};
 use super::refit::{Refit, refit};
 use super::sets::AS_GOOD;
 use super::track::Tracks;
-use crate::statistics::dot;
 
 impl Tracks<'_, '_> {
     /// The same story with the one parameter moved that tells it best, if none is named yet and
@@ -30,7 +29,7 @@ impl Tracks<'_, '_> {
             else {
                 continue;
             };
-            let sum = dot(&fitted.residuals, &fitted.residuals);
+            let sum = fitted.squares();
             if best.as_ref().is_none_or(|(least, ..)| sum < *least) {
                 best = Some((sum, fitted.model, nuisance));
             }

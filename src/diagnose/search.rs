@@ -281,6 +281,7 @@ impl<'a, 'b> Search<'a, 'b> {
             _ => self.settle(&mut model, &mut slots),
         }
         if !given_up {
+            self.split(&mut model, &mut slots);
             self.shapeless(&mut model, &mut slots);
             self.learned(&mut model, &mut slots);
         }

@@ -5,12 +5,11 @@
 use std::sync::Arc;
 
 use super::problem::{Grain, Model, Part};
-use super::refit::{Fitted, Refit, refit};
+use super::refit::{Refit, refit};
 use super::search::{Search, Slot};
 use super::sets::{AS_GOOD, headed_by};
 use super::sketch::{Drawing, NAME};
 use super::stage::{Trial, trial};
-use crate::statistics::dot;
 
 /// Curves that are refitted.
 const REFITTED: usize = 4;
@@ -82,8 +81,7 @@ impl Search<'_, '_> {
         let fitted = refit(self.problem, &self.nuisance, &starts, Refit::search());
         let mut trials: Vec<Trial> = vec![];
         for (pair, sketch) in fitted.chunks(2).zip(&sketches) {
-            let squares = |f: &Fitted| dot(&f.residuals, &f.residuals);
-            let best = pair.iter().flatten().min_by(|a, b| squares(a).total_cmp(&squares(b)));
+            let best = pair.iter().flatten().min_by(|a, b| a.squares().total_cmp(&b.squares()));
             let Some(best) = best else { continue };
             let y = self.problem.simulate(&best.model, Grain::Coarse);
             trials.extend(trial(self.problem, &sketch.cause, best.model.clone(), y, false));

@@ -10,12 +10,14 @@ use super::problem::{Grain, Model, Part, Problem, Simulated, Span};
 use super::refit::{Refit, refit};
 use super::scan::{scan_all, squares, starting_points};
 use super::screen::{Scored, Screen, screen};
-use crate::statistics::{corrected_score, dot};
+use crate::statistics::corrected_score;
 
 /// Candidates that are refitted at most.
 pub(crate) const REFITTED: usize = 8;
 /// Share of the residual that lets a candidate through whatever its score.
 const LARGE_SHARE: f64 = 0.2;
+/// Share of the score asked for that is enough where another law of the same coordinate passed.
+const NEAR: f64 = 0.7;
 /// Score in the screen that leaves no doubt.
 const SURE: f64 = 8.0;
 /// Below this share, or above this ratio of residual to output, the linear picture is not
@@ -81,9 +83,17 @@ pub(crate) fn stage(
         candidates.iter().filter(|c| !taken(c) && !free_parameter(c)).cloned().collect();
     let mut screened = screen(problem, nuisance, model, &open)?;
     let bar = gate(screened.columns);
-    let passes = |s: &Scored| {
+    let passes_alone = |s: &Scored| {
         let own_bar = if is_hum(&s.cause) { bar + 1.5 } else { bar };
         s.score.abs() > own_bar || !is_hum(&s.cause) && s.explained > LARGE_SHARE * screened.total
+    };
+    // where one law of a coordinate has passed, another need but come near
+    let spot = |c: &Candidate| c.of.is_some().then(|| (c.into.clone(), c.of.clone()));
+    let spots: Vec<_> =
+        screened.scored.iter().filter(|s| passes_alone(s)).filter_map(|s| spot(&s.cause)).collect();
+    let passes = |s: &Scored| {
+        let near = s.score.abs() > NEAR * bar && !is_hum(&s.cause);
+        passes_alone(s) || near && spot(&s.cause).is_some_and(|spot| spots.contains(&spot))
     };
     let scanned = if let Some(best) = screened.scored.first()
         && (best.explained < SCAN_BELOW * screened.total || screened.far > SCAN_FAR)
@@ -218,7 +228,7 @@ fn judge(
     let mut best: Vec<Option<(f64, Model)>> = vec![None; chosen.len()];
     for (index, fitted) in owner.into_iter().zip(fitted) {
         let Some(fitted) = fitted else { continue };
-        let sum = dot(&fitted.residuals, &fitted.residuals);
+        let sum = fitted.squares();
         if best[index].as_ref().is_none_or(|(s, _)| sum < *s) {
             best[index] = Some((sum, fitted.model));
         }

@@ -47,11 +47,9 @@ impl Together {
         answers: Vec<Option<Vec<f64>>>,
     ) -> Vec<Option<Vec<f64>>> {
         // positions of every segment's samples among those of one output
-        let segments = &problem.drive.segments;
-        let mut positions: Vec<Vec<usize>> = vec![vec![]; segments.len()];
+        let mut positions: Vec<Vec<usize>> = vec![vec![]; problem.drive.segments.len()];
         let mut count = 0;
-        for k in problem.samples(part) {
-            let at = segments.partition_point(|segment| segment.end <= k);
+        for at in problem.segments_of(part) {
             if let Some(own) = positions.get_mut(at) {
                 own.push(count);
             }

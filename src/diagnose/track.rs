@@ -63,7 +63,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
             let is_enough = |of: &Finished| of.dependence < DEPENDS && !of.found.full;
             // a few that moved beside a cause may stand in for a second one
             let few = |of: &Finished| !of.found_nothing() && of.moved.len() <= FEW;
-            let alone = |of: &Finished| is_enough(of) && !few(of);
+            let alone = |of: &Finished| is_enough(of) && !few(of) && self.colour(&of.y) < COLOURED;
             let enough = self.watch.stopped() || on_free.as_ref().is_some_and(alone);
             if !enough || on_free.is_none() {
                 found = self.search(held.clone(), start, (0.6, 0.95), None)?;

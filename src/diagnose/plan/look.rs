@@ -51,12 +51,9 @@ impl Look {
         let base = problem.job(start, Grain::Coarse)?;
         let y0 = problem.run(&[base], Span::Fit).swap_remove(0)?;
         let r0 = problem.residual(&y0, Part::Fit);
-        let jobs = jobs(problem, start, asked);
-        let known: Vec<Job> = jobs.iter().flatten().cloned().collect();
-        let mut answers = problem.run(&known, Span::Fit).into_iter();
-        let columns = jobs.iter().zip(asked).map(|(job, asked)| {
-            let y = job.as_ref().and_then(|_| answers.next()).flatten()?;
-            let r = problem.residual(&y, Part::Fit);
+        let answers = problem.run_built(&jobs(problem, start, asked), Span::Fit);
+        let columns = answers.into_iter().zip(asked).map(|(y, asked)| {
+            let r = problem.residual(&y?, Part::Fit);
             unit(r0.iter().zip(&r).map(|(a, b)| a - b), asked.size?)
         });
         Some(Self {
