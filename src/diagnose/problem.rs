@@ -11,6 +11,8 @@ use crate::system::{Base, Drive, Lane, Placed, Plan, System, SystemError};
 
 /// Lanes that are simulated side by side in one piece of work.
 const TOGETHER: usize = 64;
+/// Lanes that are one block of numbers.
+const PACK: usize = 8;
 
 /// A cause that is part of a model, with its knobs.
 #[derive(Debug, Clone)]
@@ -39,6 +41,12 @@ impl Model {
     /// instruments.
     pub fn known(&self) -> usize {
         self.added.iter().take_while(|added| added.cause.is_known_limit()).count()
+    }
+
+    /// Whether another has the same causes, in the same order.
+    pub fn same_causes(&self, other: &Self) -> bool {
+        let mut both = self.added.iter().zip(&other.added);
+        self.added.len() == other.added.len() && both.all(|(a, b)| a.cause.same_cause(&b.cause))
     }
 
     /// The same without one of its causes.
@@ -277,15 +285,18 @@ impl<'a> Problem<'a> {
             first.entry(key(i)).or_insert(i);
         }
         order.sort_by_key(|&i| (first[&key(i)], i));
+        // a few lanes are dealt out to all threads; no lane knows which others run beside it
+        let share = jobs.len().div_ceil(rayon::current_num_threads());
+        let together = (share.div_ceil(PACK) * PACK).clamp(PACK, TOGETHER);
         let mut pieces: Vec<Vec<usize>> = vec![];
         let mut lanes: usize = 0;
         let mut previous = usize::MAX;
         for i in order {
             // a new plan begins a new pack of eight
             if previous != usize::MAX && key(previous) != key(i) {
-                lanes = lanes.div_ceil(8) * 8;
+                lanes = lanes.div_ceil(PACK) * PACK;
             }
-            if pieces.is_empty() || lanes >= TOGETHER {
+            if pieces.is_empty() || lanes >= together {
                 pieces.push(vec![]);
                 lanes = 0;
             }

@@ -16,6 +16,9 @@ pub(super) const MANY: usize = 8;
 const AGAIN: usize = 6;
 const WORTH: f64 = 0.97;
 
+/// Fall of twice the logarithm of the likelihood below which an iteration was the last one.
+const MATTERS: f64 = 0.02;
+
 /// How refits are run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Refit {
@@ -111,12 +114,15 @@ fn once(
     how: Refit,
 ) -> Vec<Option<Fitted>> {
     let (part, span) = (how.part(), how.span());
+    let residuals = problem.samples(part).count() * problem.y.len();
+    let tolerance = how.settings.tolerance.max(MATTERS / residuals.max(1) as f64);
+    let settings = Settings { tolerance, ..how.settings };
     let mut runs: Vec<(Vec<Key>, Levenberg)> = models
         .iter()
         .map(|model| {
             let keys = nuisance.keys(model);
             let unknowns = keys.iter().map(|&key| nuisance.unknown(problem, model, key));
-            (keys.clone(), Levenberg::new(unknowns.collect(), how.settings))
+            (keys.clone(), Levenberg::new(unknowns.collect(), settings))
         })
         .collect();
     let moved = |model: &Model, keys: &[Key], point: &[f64]| {

@@ -45,7 +45,7 @@ impl TestData {
                     let count = run.init_samples(*init);
                     (count, run.starts(count))
                 }
-                Counted::From(from) => (from[r], run.starts(from[r])),
+                Counted::From(from) => (from[r], run.starts(telling(&run, from[r]))),
                 Counted::All => (0, run.starts_of_stretches()),
             };
             let track = run.track(starts);
@@ -107,6 +107,13 @@ impl TestData {
     fn input(&self, i: usize) -> Vec<f64> {
         self.records.iter().filter_map(|r| r.inputs.get(i)).flat_map(|s| s.values.clone()).collect()
     }
+}
+
+/// How many of the samples before those that count find the start: where it is forgotten long
+/// before these, what comes after that tells nothing of it.
+fn telling(run: &Run<'_>, from: usize) -> usize {
+    let memory = run.memory(from).max(2 * run.plan.sizes.x);
+    if run.drive.segments.len() == 1 && 2 * memory < from { memory } else { from }
 }
 
 /// Mean squares in units of the baseline's own error, averaged over outputs: before, after,

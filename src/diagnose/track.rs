@@ -186,6 +186,10 @@ impl<'a, 'b> Tracks<'a, 'b> {
         let mut found = finished.found;
         let mut search = self.begin(free.clone(), self.most);
         search.settle(&mut found.model, &mut found.slots);
+        if found.model.same_causes(&finished.fitted.model) {
+            // fitted before: to all data, and to the end
+            found.model = finished.fitted.model;
+        }
         self.finish(Track::ParametersFree, found, free.clone())
     }
 
