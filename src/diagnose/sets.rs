@@ -35,7 +35,9 @@ impl Search<'_, '_> {
         if apart > 4.0 * b.held && told_apart() {
             return false;
         }
-        a.held - b.held < SHARE_OF_SET * (before - b.held).max(0.0)
+        // the part that chooses is a part: what explains all data better is no worse for it
+        let all = |t: &Trial| self.problem.mean_square(&t.y, Part::All);
+        a.held - b.held < SHARE_OF_SET * (before - b.held).max(0.0) || all(a) < all(b)
     }
 
     /// The headline among what is as good as the best, and the set.
@@ -69,7 +71,7 @@ impl Search<'_, '_> {
     fn choose_from(&self, trials: &[Trial], before: f64, set: Vec<usize>) -> (usize, Slot) {
         let best = &trials[0];
         let gain = |t: &Trial| (before - t.held) / (before - best.held).max(1e-300);
-        // one entry per name; the best stays in even if the set is cut
+        // one entry per name
         let mut named: Vec<usize> = vec![];
         for i in set {
             if !named.iter().any(|&j| trials[j].cause.same_cause(&trials[i].cause)) {
@@ -77,11 +79,16 @@ impl Search<'_, '_> {
             }
         }
         if named.len() > SET {
-            let keep_best = named.iter().position(|&i| trials[i].cause.same_cause(&best.cause));
-            if let Some(at) = keep_best.filter(|&at| at >= SET) {
-                named.swap(SET - 1, at);
-            }
-            named.truncate(SET);
+            // the most probable ones: places of a plain law before a rich one that is as near
+            let white = self.is_white(&best.y);
+            let odds = |i: &usize| {
+                let t = &trials[*i];
+                self.problem.odds(&best.y, &t.y, white) - t.cause.cost()
+            };
+            let mut ranked: Vec<(f64, usize)> = named.iter().map(|i| (odds(i), *i)).collect();
+            ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+            ranked.truncate(SET);
+            named.retain(|i| ranked.iter().any(|(_, kept)| kept == i));
         }
         let others = trials
             .iter()
