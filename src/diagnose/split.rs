@@ -16,6 +16,7 @@ const SECOND: usize = 4;
 impl Search<'_, '_> {
     /// Puts two plain laws in the place of every rich one that is less probable than they are.
     pub(super) fn split(&mut self, model: &mut Model, slots: &mut Vec<Slot>) {
+        let (before, its_slots) = (model.clone(), slots.clone());
         let mut changed = false;
         for i in (model.known()..model.added.len()).rev() {
             let rich = model.added[i].cause.clone();
@@ -23,10 +24,10 @@ impl Search<'_, '_> {
             if rich.unknowns() < MANY || rich.is_drawn() || full || self.watch.stopped() {
                 continue;
             }
-            let Some((mut two, its_slots)) = self.two_for(model, i) else { continue };
+            let Some((mut two, of_two)) = self.two_for(model, i) else { continue };
             let mut both = slots.clone();
             both.remove(i);
-            both.extend(its_slots);
+            both.extend(of_two);
             self.prune(&mut two, &mut both, 0);
             if self.gained(model, &two).is_some_and(|gained| gained > 0.0) {
                 (*model, *slots, changed) = (two, both, true);
@@ -35,6 +36,9 @@ impl Search<'_, '_> {
         if changed {
             self.swap(model, slots);
             self.settle(model, slots);
+            if self.gained(&before, model).is_none_or(|gained| gained <= 0.0) {
+                (*model, *slots) = (before, its_slots);
+            }
         }
     }
 
