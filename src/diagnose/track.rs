@@ -212,7 +212,14 @@ impl<'a, 'b> Tracks<'a, 'b> {
         mut found: Found,
         nuisance: Nuisance,
     ) -> Option<Finished> {
-        let (mut fitted, mut y) = self.fitted_to_all(&nuisance, &found.model)?;
+        let mut fitted_to_all = self.fitted_to_all(&nuisance, &found.model);
+        // what diverges with all steps, or on all data, explains nothing: the last cause first
+        while fitted_to_all.is_none() && found.model.added.len() > found.model.known() {
+            found.model.added.pop();
+            found.slots.pop();
+            fitted_to_all = self.fitted_to_all(&nuisance, &found.model);
+        }
+        let (mut fitted, mut y) = fitted_to_all?;
         if nuisance.segments >= MANY {
             // the end of a stretch that was not fitted yet may be far off, and no fault of the data
             self.problem.flag_spikes(&y);
