@@ -14,6 +14,7 @@ use crate::model::Signals;
 
 /// Standard errors beyond which a parameter counts as moved.
 const MOVED: f64 = 3.0;
+
 /// One track, finished.
 pub(crate) struct Finished {
     pub track: Track,
@@ -99,8 +100,7 @@ impl Finished {
 
     /// Natural logarithm of how many stories there are that are as long.
     pub(super) fn cost(&self) -> f64 {
-        let causes = self.fitted.model.added.iter().map(|added| added.cause.cost());
-        causes.sum::<f64>() + NUMBER * self.count_moved() as f64
+        self.fitted.model.cost() + NUMBER * self.count_moved() as f64
     }
 
     /// Parameters moved; along a ridge it is one, whichever.

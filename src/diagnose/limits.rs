@@ -73,8 +73,7 @@ impl Search<'_, '_> {
             let candidates = library(self.problem, self.nominal, &model, vec![], self.allowed);
             if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
                 model = model.with(&cause, knobs);
-                let set = vec![(cause, 1.0)];
-                slots.push(Slot { set, others: vec![], score: 0.0 });
+                slots.push(Slot::of(&cause));
             }
         }
         model

@@ -35,6 +35,13 @@ pub(crate) struct Slot {
     pub score: f64,
 }
 
+impl Slot {
+    /// A cause that was compared with no other.
+    pub fn of(cause: &Arc<Candidate>) -> Self {
+        Self { set: vec![(cause.clone(), 1.0)], others: vec![], score: 0.0 }
+    }
+}
+
 /// What a search ended with.
 pub(crate) struct Found {
     pub model: Model,
@@ -219,13 +226,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 {
                     // what stands beside the last of each pair, a known limit too
                     let others = pool[0].model.added.iter().rev().skip(1).rev();
-                    let others = others
-                        .map(|added| Slot {
-                            set: vec![(added.cause.clone(), 1.0)],
-                            others: vec![],
-                            score: 0.0,
-                        })
-                        .collect();
+                    let others = others.map(|added| Slot::of(&added.cause)).collect();
                     if self.accepts_trial(&before, &pool[0]) {
                         slots = others;
                     }

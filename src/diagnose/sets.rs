@@ -6,6 +6,7 @@ use super::candidate::Candidate;
 use super::problem::{Model, Part};
 use super::search::{Search, Slot};
 use super::stage::{REFITTED, Trial, stage, trial};
+use crate::statistics::rms;
 
 /// Score below which one model is as good as another.
 pub(super) const AS_GOOD: f64 = 2.0;
@@ -36,8 +37,7 @@ impl Search<'_, '_> {
             return false;
         }
         // the part that chooses is a part: what explains all data better is no worse for it
-        let all = |t: &Trial| self.problem.mean_square(&t.y, Part::All);
-        a.held - b.held < SHARE_OF_SET * (before - b.held).max(0.0) || all(a) < all(b)
+        a.held - b.held < SHARE_OF_SET * (before - b.held).max(0.0) || rms(&ra) < rms(&rb)
     }
 
     /// The headline among what is as good as the best, and the set.

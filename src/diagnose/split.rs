@@ -29,14 +29,14 @@ impl Search<'_, '_> {
             both.remove(i);
             both.extend(of_two);
             self.prune(&mut two, &mut both, 0);
-            if self.gained(model, &two).is_some_and(|gained| gained > 0.0) {
+            if self.is_gained(model, &two) {
                 (*model, *slots, changed) = (two, both, true);
             }
         }
         if changed {
             self.swap(model, slots);
             self.settle(model, slots);
-            if self.gained(&before, model).is_none_or(|gained| gained <= 0.0) {
+            if !self.is_gained(&before, model) {
                 (*model, *slots) = (before, its_slots);
             }
         }
@@ -56,29 +56,33 @@ impl Search<'_, '_> {
             let found = stage(self.problem, &self.nuisance, model, &plain, false, most);
             found.map(|found| found.trials).unwrap_or_default()
         };
+        let now = self.present(model)?;
         let mut best: Option<(f64, Trial, Vec<Trial>)> = None;
         for first in on(&without, FIRST).into_iter().take(FIRST) {
             let mut seconds = on(&first.model, SECOND);
-            let gained = seconds.iter().map(|second| self.gained(model, &second.model));
-            let of_first = gained.enumerate().filter_map(|(at, gained)| Some((gained?, at)));
-            let Some((gained, at)) = of_first.max_by(|a, b| a.0.total_cmp(&b.0)) else { continue };
+            let gained = seconds.iter().map(|t| self.gained((model, &now), (&t.model, &t.y)));
+            let best_of_first = gained.zip(0..).max_by(|a, b| a.0.total_cmp(&b.0));
+            let Some((gained, at)) = best_of_first else { continue };
             if gained > best.as_ref().map_or(0.0, |(most, ..)| *most) {
                 seconds.swap(0, at);
                 best = Some((gained, first, seconds));
             }
         }
         let (_, first, seconds) = best?;
-        let set = vec![(first.cause.clone(), 1.0)];
         let (_, slot) = self.choose(&seconds, first.held);
         let second = headed_by(slot, &seconds[0].cause);
         let two = seconds.into_iter().next()?.model;
-        Some((two, [Slot { set, others: vec![], score: 0.0 }, second]))
+        Some((two, [Slot::of(&first.cause), second]))
     }
 
-    /// Natural logarithm of how much more probable `b` is than `a`.
-    fn gained(&self, a: &Model, b: &Model) -> Option<f64> {
-        let (ya, yb) = (self.present(a)?, self.present(b)?);
-        let cost = |m: &Model| m.added.iter().map(|added| added.cause.cost()).sum::<f64>();
-        Some(self.problem.odds(&ya, &yb, self.is_white(&yb)) + cost(a) - cost(b))
+    /// Whether model `b` is more probable than `a`.
+    fn is_gained(&self, a: &Model, b: &Model) -> bool {
+        let both = self.present(a).zip(self.present(b));
+        both.is_some_and(|(ya, yb)| self.gained((a, &ya), (b, &yb)) > 0.0)
+    }
+
+    /// Natural logarithm of how much more probable `b` is than `a`, models and their outputs.
+    fn gained(&self, (a, ya): (&Model, &[Vec<f64>]), (b, yb): (&Model, &[Vec<f64>])) -> f64 {
+        self.problem.odds(ya, yb, self.is_white(yb)) + a.cost() - b.cost()
     }
 }

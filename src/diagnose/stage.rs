@@ -88,12 +88,13 @@ pub(crate) fn stage(
         s.score.abs() > own_bar || !is_hum(&s.cause) && s.explained > LARGE_SHARE * screened.total
     };
     // where one law of a coordinate has passed, another need but come near
-    let spot = |c: &Candidate| c.of.is_some().then(|| (c.into.clone(), c.of.clone()));
-    let spots: Vec<_> =
-        screened.scored.iter().filter(|s| passes_alone(s)).filter_map(|s| spot(&s.cause)).collect();
+    let passed: Vec<Arc<Candidate>> =
+        screened.scored.iter().filter(|s| passes_alone(s)).map(|s| s.cause.clone()).collect();
+    let beside =
+        |c: &Candidate| c.of.is_some() && passed.iter().any(|p| p.into == c.into && p.of == c.of);
     let passes = |s: &Scored| {
         let near = s.score.abs() > NEAR * bar && !is_hum(&s.cause);
-        passes_alone(s) || near && spot(&s.cause).is_some_and(|spot| spots.contains(&spot))
+        passes_alone(s) || near && beside(&s.cause)
     };
     let scanned = if let Some(best) = screened.scored.first()
         && (best.explained < SCAN_BELOW * screened.total || screened.far > SCAN_FAR)
