@@ -11,6 +11,7 @@ use super::precision::standard_error;
 use super::problem::{Grain, Model};
 use super::refit::{Refit, refit};
 use super::score::{Scored, TestData, removed};
+use super::sets::SET;
 use super::teller::Teller;
 use super::words::sentence;
 
@@ -58,21 +59,18 @@ impl Teller<'_, '_> {
                 Wire::Parameter(p) => Some(self.problem.base.signals.parameters[p].value),
                 _ => None,
             };
-            let mut indistinguishable = vec![];
-            for (member, gain) in &slot.set {
-                if !member.same_cause(cause) {
-                    indistinguishable.push(alternative(member, gain.clamp(0.0, 1.0) * share));
-                }
-                // what holds of the headline's place holds of theirs, and need not be said again
-                for (into, of, _) in member.twins.iter().filter(|_| member.same_cause(cause)) {
-                    indistinguishable.push(Alternative {
-                        effect: member.effect.into(),
-                        into: into.clone(),
-                        of: of.clone(),
-                        error_removed: gain.clamp(0.0, 1.0) * share,
-                    });
-                }
-            }
+            // what holds of the headline's place holds of its twins', and need not be said again
+            let mut twins = cause.twins.iter().map(|(into, of, _)| Alternative {
+                effect: cause.effect.into(),
+                into: into.clone(),
+                of: of.clone(),
+                error_removed: share,
+            });
+            let members = slot.set.iter().filter(|(member, _)| !member.same_cause(cause));
+            let members = members.map(|(c, gain)| alternative(c, gain.clamp(0.0, 1.0) * share));
+            // other laws before a second twin: where there are too many, twins are missed least
+            let mut indistinguishable: Vec<Alternative> =
+                twins.next().into_iter().chain(members).chain(twins).collect();
             let mut said = vec![cause.name()];
             indistinguishable.retain(|a: &Alternative| {
                 let name = (a.effect.clone(), a.into.clone(), a.of.clone());
@@ -80,7 +78,10 @@ impl Teller<'_, '_> {
                 said.push(name);
                 new
             });
-            let runners_up = slot.others.iter().take(4);
+            let too_many = indistinguishable.split_off((SET - 1).min(indistinguishable.len()));
+            let others =
+                slot.others.iter().map(|(c, gain)| alternative(c, gain.clamp(0.0, 1.0) * share));
+            let runners_up = too_many.into_iter().chain(others).take(4).collect();
             if cause.is_known_limit() {
                 causes.push(self.clipping(cause, values, share, p_value));
                 continue;
@@ -100,9 +101,7 @@ impl Teller<'_, '_> {
                 p_value,
                 error_removed: share,
                 indistinguishable,
-                runners_up: runners_up
-                    .map(|(c, gain)| alternative(c, gain.clamp(0.0, 1.0) * share))
-                    .collect(),
+                runners_up,
                 acts_where: None,
                 records: None,
                 rows: None,

@@ -12,12 +12,12 @@ use crate::statistics::rms;
 pub(super) const AS_GOOD: f64 = 2.0;
 /// Score on all data that tells two causes apart which the part that chooses does not.
 const TOLD_APART: f64 = 3.0;
-/// Logarithm of the odds at which one of two causes is ruled out by the other.
-const RULED_OUT: f64 = 8.0;
+/// Logarithm of the odds, numbers paid for, at which one of two causes is ruled out by the other.
+const RULED_OUT: f64 = 6.0;
 /// A cause of the same set gives back less than this share of what the best removes.
 const SHARE_OF_SET: f64 = 0.10;
 /// Members of a named set at most.
-const SET: usize = 4;
+pub(super) const SET: usize = 4;
 
 impl Search<'_, '_> {
     /// Whether `a` explains as well as `b`, given what stood before.
@@ -50,8 +50,12 @@ impl Search<'_, '_> {
     pub(super) fn choose_last(&self, trials: &[Trial], before: f64) -> (usize, Slot) {
         let (mut set, white) = (self.set(trials, before), self.is_white(&trials[0].y));
         let all = set.clone();
-        let beats =
-            |a: usize, b: usize| self.problem.odds(&trials[a].y, &trials[b].y, white) > RULED_OUT;
+        // a law with more numbers has to earn them
+        let beats = |a: usize, b: usize| {
+            let (a, b) = (&trials[a], &trials[b]);
+            let likelier = self.problem.odds(&a.y, &b.y, white);
+            likelier + a.cause.cost() - b.cause.cost() > RULED_OUT
+        };
         set.retain(|&a| !all.iter().any(|&b| beats(a, b)));
         self.choose_from(trials, before, if set.is_empty() { all } else { set })
     }

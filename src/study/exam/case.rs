@@ -2,9 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Exam;
+use super::{Exam, Machine};
 use crate::data::Random;
 use crate::study::{StudyError, shard};
+
+/// Draws of several effects before some that belong together are taken after all.
+const DRAWS: u64 = 100;
 
 /// What is asked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -123,7 +126,7 @@ impl Exam {
                     for (kind, size, count) in draws {
                         for draw in 0..count as u64 {
                             let lot = seed.wrapping_mul(1_000_003) + draw * 101 + size as u64;
-                            let hidden = lots(machine.hidden.len(), size, lot + system as u64 * 17);
+                            let hidden = several(machine, size, lot + system as u64 * 17);
                             cases.push(of(kind, hidden, g));
                         }
                     }
@@ -131,6 +134,18 @@ impl Exam {
             }
         }
     }
+}
+
+/// Some of a machine's effects, none a special case of another: the two together are the other.
+fn several(machine: &Machine, wanted: usize, seed: u64) -> Vec<usize> {
+    let all = &machine.hidden;
+    let stand_alone = |drawn: &Vec<usize>| {
+        !drawn.iter().any(|&a| drawn.iter().any(|&b| all[a].is_case_of(&all[b])))
+    };
+    let draws = (0..DRAWS).map(|again| lots(all.len(), wanted, seed.wrapping_add(again * 7919)));
+    let mut draws = draws.peekable();
+    let first = draws.peek().cloned().unwrap_or_default();
+    draws.find(stand_alone).unwrap_or(first)
 }
 
 /// Some of `of` numbers, each at most once, in order.
@@ -159,5 +174,25 @@ mod tests {
             assert!(drawn.windows(2).all(|pair| pair[0] < pair[1]), "{drawn:?}");
         }
         assert_eq!(lots(2, 3, 1), [0, 1]);
+    }
+
+    #[test]
+    fn an_effect_is_not_drawn_beside_its_special_case() {
+        let friction = |width: &str| format!("{{ into = \"f\", of = \"v\", {width} }}");
+        let dry = friction("effect.coulomb_friction = { level = -0.1, width = 0.02 }");
+        let bump = friction(
+            "effect.stribeck_friction = { level = -0.1, extra = -0.1, speed = 0.5, width = 0.02 }",
+        );
+        let drag = friction("effect.drag = { coefficient = -0.1 }");
+        let machine: Machine = toml::from_str(&format!(
+            "model = \"m.toml\"\nexcitation.filtered_noise = {{ rms = 1.0, cutoff = 1.0, order = 2 }}\nhidden = [{dry}, {bump}, {drag}]"
+        ))
+        .unwrap();
+        for seed in 0..50 {
+            let drawn = several(&machine, 2, seed);
+            assert!(drawn == [0, 2] || drawn == [1, 2], "{drawn:?}");
+        }
+        // where there is no other way, they are
+        assert_eq!(several(&machine, 3, 1), [0, 1, 2]);
     }
 }

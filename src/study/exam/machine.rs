@@ -43,6 +43,19 @@ impl Concealed {
         format!("{}>{}<{of}", self.placed.effect.typetag_name(), self.placed.into)
     }
 
+    /// Whether it is a special case of another one at the same place, so that both together are
+    /// the other.
+    pub(super) fn is_case_of(&self, other: &Self) -> bool {
+        let knobs = |of: &Self| -> Vec<String> {
+            of.placed.effect.card().knobs.iter().map(|knob| knob.name.to_string()).collect()
+        };
+        let (own, others) = (knobs(self), knobs(other));
+        let (a, b) = (&self.placed, &other.placed);
+        (&a.into, &a.of) == (&b.into, &b.of)
+            && own.len() < others.len()
+            && own.iter().all(|knob| others.contains(knob))
+    }
+
     /// The effect grown by a factor from nothing; `None` beyond what it can be.
     fn grown(&self, factor: f64, system: &System) -> Result<Option<Placed>, StudyError> {
         let card = self.placed.effect.card();

@@ -44,6 +44,8 @@ pub struct Marks {
     pub first: bool,
     /// Names in the first cause's set, itself among them; 0 if there is no cause.
     pub set_size: usize,
+    /// The others of that set, short.
+    pub beside: Vec<String>,
     /// Headlines of the causes, short; faults of the data left out.
     pub found: Vec<String>,
     /// The verdict.
@@ -67,14 +69,15 @@ fn headline(cause: &Cause) -> String {
     short(&cause.effect, &cause.into, cause.of.as_deref())
 }
 
+fn beside(cause: &Cause) -> Vec<String> {
+    let others = cause.indistinguishable.iter();
+    others.map(|other| short(&other.effect, &other.into, other.of.as_deref())).collect()
+}
+
 fn hit(cause: &Cause, name: &str) -> Hit {
-    let in_set = || {
-        let mut others = cause.indistinguishable.iter();
-        others.any(|other| short(&other.effect, &other.into, other.of.as_deref()) == name)
-    };
     match headline(cause) == name {
         true => Hit::Exact,
-        false if in_set() => Hit::InSet,
+        false if beside(cause).iter().any(|other| other == name) => Hit::InSet,
         false => Hit::Missed,
     }
 }
@@ -135,6 +138,7 @@ impl Marks {
             system: machine.name(),
             first: causes.first().is_some_and(|c| hidden.iter().any(|n| hit(c, n) > Hit::Missed)),
             set_size: causes.first().map_or(0, |c| 1 + c.indistinguishable.len()),
+            beside: causes.first().map_or(vec![], |c| beside(c)),
             found: causes.iter().map(|c| headline(c)).collect(),
             verdict: verdict(finding.verdict).into(),
             gain_covered: removed
