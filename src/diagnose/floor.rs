@@ -135,21 +135,11 @@ impl Predictor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::data::Random;
 
     fn noise(n: usize) -> Vec<f64> {
-        let mut seed = 88_172_645_463_325_252u64;
-        (0..n)
-            .map(|_| {
-                let mut sum = 0.0;
-                for _ in 0..12 {
-                    seed ^= seed << 13;
-                    seed ^= seed >> 7;
-                    seed ^= seed << 17;
-                    sum += (seed >> 11) as f64 / (1u64 << 53) as f64;
-                }
-                sum - 6.0
-            })
-            .collect()
+        let mut random = Random::new(1);
+        (0..n).map(|_| random.normal()).collect()
     }
 
     #[test]

@@ -249,3 +249,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
         Some(finished)
     }
 }
+
+#[cfg(test)]
+#[path = "track_tests.rs"]
+mod tests;
