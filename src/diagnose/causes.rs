@@ -60,7 +60,7 @@ impl Teller<'_, '_> {
                 _ => None,
             };
             // what holds of the headline's place holds of its twins', and need not be said again
-            let mut twins = cause.twins.iter().map(|(into, of, _)| Alternative {
+            let twins = cause.twins.iter().map(|(into, of, _)| Alternative {
                 effect: cause.effect.into(),
                 into: into.clone(),
                 of: of.clone(),
@@ -68,9 +68,8 @@ impl Teller<'_, '_> {
             });
             let members = slot.set.iter().filter(|(member, _)| !member.same_cause(cause));
             let members = members.map(|(c, gain)| alternative(c, gain.clamp(0.0, 1.0) * share));
-            // other laws before a second twin: where there are too many, twins are missed least
-            let mut indistinguishable: Vec<Alternative> =
-                twins.next().into_iter().chain(members).chain(twins).collect();
+            // other laws before twins: where there are too many, twins are missed least
+            let mut indistinguishable: Vec<Alternative> = members.chain(twins).collect();
             let mut said = vec![cause.name()];
             indistinguishable.retain(|a: &Alternative| {
                 let name = (a.effect.clone(), a.into.clone(), a.of.clone());
