@@ -1,6 +1,6 @@
 //! One sample of an interconnection on a block of lanes, forward and back.
 
-use crate::network::{Arranged, Instants, Line, Row, flush};
+use crate::network::{Arranged, Instants, Line, Row, flush, prefetch};
 
 use super::driver::{Driver, Sight};
 use super::interconnection::Interconnection;
@@ -204,6 +204,12 @@ impl<'a, E: Number> Engine<'a, E> {
         let outputs = program.adjoint_output();
         work.adjoints[program.states..outputs.start].fill(Row::zero());
         work.adjoints[outputs.end..].fill(Row::zero());
+        if sample > 0 {
+            // all samples together are too many for the second cache, and the way from the
+            // third one is long
+            let before = work.frame(sample - 1);
+            prefetch(&work.rows[before..before + work.stride]);
+        }
         let slot = TOGETHER - 1 - work.waiting;
         for op in program.ops.iter().rev() {
             self.step_back(work, base, op, slot);

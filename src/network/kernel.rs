@@ -1,4 +1,4 @@
-//! The three loops that take nearly all of the time of learning.
+//! The two loops that take most of the time of learning.
 
 use super::pack::{Line, Pack, Precision, Row, per_pack};
 
@@ -37,10 +37,8 @@ pub(crate) mod mode {
     pub const SET: u8 = 0;
     /// out += W x
     pub const ADD: u8 = 1;
-    /// out = tanh(W x + b)
-    pub const TANH: u8 = 2;
     /// out = (W x) (1 - h^2), where h = tanh(..) is handed in
-    pub const SLOPE: u8 = 3;
+    pub const SLOPE: u8 = 2;
 }
 
 per_pack! {
@@ -83,29 +81,26 @@ fn strip<P: Pack, const K: usize, const MODE: u8>(
             sum[i][k] = match MODE {
                 // SAFETY, here and below: at + K N <= BLOCK, the length of a row
                 mode::ADD if i < out.len() => unsafe { P::load(out[i].ptr().add(at + k * P::N)) },
-                mode::SET | mode::TANH => P::splat(bias[i]),
+                mode::SET => P::splat(bias[i]),
                 _ => P::constant(0.0),
             };
         }
     }
-    for (x, weights) in x.iter().zip(weights) {
-        let mut value = [P::constant(0.0); K];
-        for (k, value) in value.iter_mut().enumerate() {
-            *value = unsafe { P::load(x.ptr().add(at + k * P::N)) };
-        }
-        for i in 0..4 {
-            let weight = P::splat(weights[i]);
-            for k in 0..K {
-                sum[i][k] = value[k].fma(weight, sum[i][k]);
-            }
-        }
+    // two at a time: half the counting
+    let (pairs, last) = x.as_chunks::<2>();
+    let (weight_pairs, last_weights) = weights.as_chunks::<2>();
+    for (x, weights) in pairs.iter().zip(weight_pairs) {
+        more::<P, K>(&mut sum, &x[0], &weights[0], at);
+        more::<P, K>(&mut sum, &x[1], &weights[1], at);
+    }
+    for (x, weights) in last.iter().zip(last_weights) {
+        more::<P, K>(&mut sum, x, weights, at);
     }
     for (i, out) in out.iter_mut().enumerate() {
         let Some(sum) = sum.get(i) else { break };
         for (k, &sum) in sum.iter().enumerate() {
             let lane = at + k * P::N;
             let result = match MODE {
-                mode::TANH => sum.tanh(),
                 mode::SLOPE => {
                     let h = unsafe { P::load(h[i].ptr().add(lane)) };
                     sum.mul(h.fnma(h, P::constant(1.0)))
@@ -113,6 +108,27 @@ fn strip<P: Pack, const K: usize, const MODE: u8>(
                 _ => sum,
             };
             unsafe { result.store(out.mut_ptr().add(lane)) };
+        }
+    }
+}
+
+/// Adds one input's share.
+#[inline(always)]
+fn more<P: Pack, const K: usize>(
+    sum: &mut [[P; K]; 4],
+    x: &Row<P::Number>,
+    weights: &[P::Number; 4],
+    at: usize,
+) {
+    let mut value = [P::constant(0.0); K];
+    for (k, value) in value.iter_mut().enumerate() {
+        // SAFETY: at + K N <= BLOCK, the length of a row
+        *value = unsafe { P::load(x.ptr().add(at + k * P::N)) };
+    }
+    for i in 0..4 {
+        let weight = P::splat(weights[i]);
+        for k in 0..K {
+            sum[i][k] = value[k].fma(weight, sum[i][k]);
         }
     }
 }
@@ -160,6 +176,7 @@ per_pack! {
             while j < whole {
                 match P::TILE {
                     4 => tile::<P, 4>(o, j, outputs, inputs, steps, d, x, weights, None),
+                    3 => tile::<P, 3>(o, j, outputs, inputs, steps, d, x, weights, None),
                     2 => tile::<P, 2>(o, j, outputs, inputs, steps, d, x, weights, None),
                     _ => tile::<P, 1>(o, j, outputs, inputs, steps, d, x, weights, None),
                 }
@@ -234,75 +251,10 @@ fn tile<P: Pack, const J: usize>(
     }
 }
 
+/// Adds to a line of partial sums.
 #[inline(always)]
-fn add_to<P: Pack>(line: &mut Line<P::Number>, sum: P) {
+pub(super) fn add_to<P: Pack>(line: &mut Line<P::Number>, sum: P) {
     let at = line.mut_ptr();
     // SAFETY: no pack is longer than a line
     unsafe { P::load(at).add(sum).store(at) };
-}
-
-per_pack! {
-    /// to += from
-    pub(crate) fn add<E, P>(to: &mut [Row<E>], from: &[Row<E>]) {
-        for (to, from) in to.iter_mut().zip(from) {
-            let mut at = 0;
-            while at < E::BLOCK {
-                // SAFETY: at + N <= BLOCK, the length of a row
-                unsafe {
-                    let sum = P::load(to.ptr().add(at)).add(P::load(from.ptr().add(at)));
-                    sum.store(to.mut_ptr().add(at));
-                }
-                at += P::N;
-            }
-        }
-    }
-}
-
-per_pack! {
-    /// to += factor from
-    pub(crate) fn add_scaled<E, P>(to: &mut Row<E>, from: &Row<E>, factor: E) {
-        let mut at = 0;
-        while at < E::BLOCK {
-            // SAFETY: at + N <= BLOCK, the length of a row
-            unsafe {
-                let from = P::load(from.ptr().add(at));
-                let sum = from.fma(P::splat(factor), P::load(to.ptr().add(at)));
-                sum.store(to.mut_ptr().add(at));
-            }
-            at += P::N;
-        }
-    }
-}
-
-per_pack! {
-    /// Turns what is far below anything that matters into 0, so that a decaying adjoint
-    /// never becomes a subnormal number, which the processor handles a hundred times slower.
-    pub(crate) fn flush<E, P>(rows: &mut [Row<E>]) {
-        let by = P::constant(E::FLUSH);
-        for row in rows {
-            let mut at = 0;
-            while at < E::BLOCK {
-                // SAFETY: at + N <= BLOCK, the length of a row
-                unsafe {
-                    let to = row.mut_ptr().add(at);
-                    P::load(to).add(by).sub(by).store(to);
-                }
-                at += P::N;
-            }
-        }
-    }
-}
-
-per_pack! {
-    /// Adds the products of two rows to a line of partial sums.
-    pub(crate) fn inner<E, P>(a: &Row<E>, b: &Row<E>, line: &mut Line<E>) {
-        let mut sum = P::constant(0.0);
-        let mut at = 0;
-        while at < E::BLOCK {
-            // SAFETY: at + N <= BLOCK, the length of a row
-            sum = unsafe { P::load(a.ptr().add(at)).fma(P::load(b.ptr().add(at)), sum) };
-            at += P::N;
-        }
-        add_to::<P>(line, sum);
-    }
 }

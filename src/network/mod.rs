@@ -20,6 +20,7 @@ mod kernel;
 mod layout;
 mod pack;
 mod resnet;
+mod rows;
 mod sweep;
 #[cfg(test)]
 mod tests;
@@ -30,6 +31,7 @@ pub use layout::Layout;
 pub use pack::Precision;
 pub use resnet::{ResNet, Start};
 
-pub(crate) use kernel::{Instants, add, add_scaled, flush, inner};
+pub(crate) use kernel::Instants;
 pub(crate) use pack::{Line, Row};
+pub(crate) use rows::{add, add_scaled, flush, inner, prefetch};
 pub(crate) use sweep::{Arranged, Frame};

@@ -2,6 +2,7 @@
 
 use super::kernel::{Instants, Tiles, affine, mode, outer};
 use super::pack::{Line, Precision, Row};
+use super::rows::tanh;
 use super::{Layout, ResNet};
 
 /// Offsets and scales around a network: y = offset_y + scale_y net((x - offset_x) / scale_x).
@@ -104,7 +105,8 @@ impl<E: Precision> Arranged<E> {
         let (mut before, mut rest) = (x, h);
         for (layer, &units) in self.hidden.iter().zip(self.layout.hidden()) {
             let (own, after) = rest.split_at_mut(units);
-            affine::<E, { mode::TANH }>(layer, before, &[], own);
+            affine::<E, { mode::SET }>(layer, before, &[], own);
+            tanh(own);
             (before, rest) = (own, after);
         }
         let last = if self.hidden.is_empty() { &[] } else { before };

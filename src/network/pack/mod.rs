@@ -68,10 +68,10 @@ pub trait Pack: Copy {
     fn constant(x: f64) -> Self {
         Self::splat(Self::Number::of(x))
     }
-    /// Hyperbolic tangent.
+    /// Hyperbolic tangents in place of what they are of; fastest for many packs.
     #[inline(always)]
-    fn tanh(self) -> Self {
-        tanh::tanh(self)
+    fn tanh<const K: usize>(x: &mut [Self; K]) {
+        tanh::tanh(x);
     }
 }
 

@@ -19,21 +19,47 @@ const SERIES: [f64; 12] = [
     1.0 / 6227020800.0,
 ];
 
-/// tanh|x| = -m / (m + 2) with m = e^(-2|x|) - 1, which loses nothing near 0.
+/// tanh|x| = n / (2 - n) with n = 1 - e^(-2|x|), which loses nothing near 0, of several packs.
 ///
 /// With -2|x| = k ln 2 + r and |r| <= ln 2 / 2 the series of e^r - 1 is cut where its
 /// terms fall below half a unit in the last place.
+///
+/// One pack waits for its own last operation most of the time. So each part of the work is
+/// done for all packs before the next one begins: the parts are short enough for the
+/// processor to see several packs at once, and their constants stay in registers.
 #[inline(always)]
-pub(super) fn tanh<P: Pack>(x: P) -> P {
+pub(super) fn tanh<P: Pack, const K: usize>(x: &mut [P; K]) {
+    let zero = P::constant(0.0);
+    let (mut shifted, mut less_one) = ([zero; K], [zero; K]);
+    for i in 0..K {
+        (shifted[i], less_one[i]) = reduced(x[i]);
+    }
+    for i in 0..K {
+        less_one[i] = exponential_less_one(less_one[i]);
+    }
+    for i in 0..K {
+        x[i] = quotient(shifted[i], less_one[i]).signed_as(x[i]);
+    }
+}
+
+/// k + [`Internals::ROUND`] and r.
+#[inline(always)]
+fn reduced<P: Pack>(x: P) -> (P, P) {
     type S<P> = <P as Pack>::Number;
     let c = P::constant;
     let y = x.abs().mul(c(-2.0)).at_least(c(S::<P>::LIMIT));
     let shifted = y.fma(c(std::f64::consts::LOG2_E), c(S::<P>::ROUND));
     let k = shifted.sub(c(S::<P>::ROUND));
     let [upper, lower] = S::<P>::LN2;
-    let r = k.fnma(c(lower), k.fnma(c(upper), y));
+    (shifted, k.fnma(c(lower), k.fnma(c(upper), y)))
+}
+
+/// e^r - 1.
+#[inline(always)]
+fn exponential_less_one<P: Pack>(r: P) -> P {
+    type S<P> = <P as Pack>::Number;
     let r2 = r.mul(r);
-    let two = |i: usize| r.fma(c(SERIES[i + 1]), c(SERIES[i]));
+    let two = |i: usize| r.fma(P::constant(SERIES[i + 1]), P::constant(SERIES[i]));
     let four = |i: usize| r2.fma(two(i + 2), two(i));
     let series = if S::<P>::TERMS == 12 {
         let r4 = r2.mul(r2);
@@ -41,8 +67,13 @@ pub(super) fn tanh<P: Pack>(x: P) -> P {
     } else {
         r2.fma(r2.fma(two(4), two(2)), two(0))
     };
-    let less_one = r2.fma(series, r);
+    r2.fma(series, r)
+}
+
+/// n / (2 - n) with 1 - n = 2^k e^r.
+#[inline(always)]
+fn quotient<P: Pack>(shifted: P, less_one: P) -> P {
     let scale = shifted.power_of_two();
-    let m = scale.fma(less_one, scale.sub(c(1.0)));
-    c(0.0).sub(m).divided(m.add(c(2.0))).signed_as(x)
+    let n = scale.fnma(less_one, P::constant(1.0).sub(scale));
+    n.divided(P::constant(2.0).sub(n))
 }

@@ -135,7 +135,7 @@ pack! {
 
 pack! {
     /// Four `f64` (AVX2 and FMA).
-    F64x4, f64, __m256d, 4, 2, 2,
+    F64x4, f64, __m256d, 4, 2, 3,
     _mm256_set1_pd, _mm256_loadu_pd, _mm256_storeu_pd, _mm256_add_pd, _mm256_sub_pd,
     _mm256_mul_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_max_pd,
     |a, b| abs: _mm256_andnot_pd(_mm256_set1_pd(-0.0), a),
@@ -147,7 +147,7 @@ pack! {
 
 pack! {
     /// Eight `f32` (AVX2 and FMA).
-    F32x8, f32, __m256, 8, 2, 2,
+    F32x8, f32, __m256, 8, 2, 3,
     _mm256_set1_ps, _mm256_loadu_ps, _mm256_storeu_ps, _mm256_add_ps, _mm256_sub_ps,
     _mm256_mul_ps, _mm256_fmadd_ps, _mm256_fnmadd_ps, _mm256_max_ps,
     |a, b| abs: _mm256_andnot_ps(_mm256_set1_ps(-0.0), a),
