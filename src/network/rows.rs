@@ -19,6 +19,7 @@ per_pack! {
 /// The same for one row, `K` packs at a time.
 #[inline(always)]
 fn tanh_together<P: Pack, const K: usize>(row: &mut Row<P::Number>) {
+    debug_assert_eq!(P::Number::BLOCK % (K * P::N), 0, "no pack is left out");
     let mut at = 0;
     while at + K * P::N <= P::Number::BLOCK {
         let mut x = [P::constant(0.0); K];
