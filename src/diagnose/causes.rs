@@ -1,5 +1,7 @@
 //! Causes as plain data: numbers, sentences, shares.
 
+use std::sync::Arc;
+
 use super::candidate::{Candidate, Wire};
 use super::certify::{either, on_test};
 use super::error::DiagnoseError;
@@ -66,10 +68,12 @@ impl Teller<'_, '_> {
                 of: of.clone(),
                 error_removed: share,
             });
+            let as_data =
+                |(c, gain): &(Arc<Candidate>, f64)| alternative(c, gain.clamp(0.0, 1.0) * share);
             let members = slot.set.iter().filter(|(member, _)| !member.same_cause(cause));
-            let members = members.map(|(c, gain)| alternative(c, gain.clamp(0.0, 1.0) * share));
             // other laws before twins: where there are too many, twins are missed least
-            let mut indistinguishable: Vec<Alternative> = members.chain(twins).collect();
+            let mut indistinguishable: Vec<Alternative> =
+                members.map(as_data).chain(twins).collect();
             let mut said = vec![cause.name()];
             indistinguishable.retain(|a: &Alternative| {
                 let name = (a.effect.clone(), a.into.clone(), a.of.clone());
@@ -78,9 +82,8 @@ impl Teller<'_, '_> {
                 new
             });
             let too_many = indistinguishable.split_off((SET - 1).min(indistinguishable.len()));
-            let others =
-                slot.others.iter().map(|(c, gain)| alternative(c, gain.clamp(0.0, 1.0) * share));
-            let runners_up = too_many.into_iter().chain(others).take(4).collect();
+            let runners_up =
+                too_many.into_iter().chain(slot.others.iter().map(as_data)).take(4).collect();
             if cause.is_known_limit() {
                 causes.push(self.clipping(cause, values, share, p_value));
                 continue;

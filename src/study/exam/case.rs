@@ -142,10 +142,8 @@ fn several(machine: &Machine, wanted: usize, seed: u64) -> Vec<usize> {
     let stand_alone = |drawn: &Vec<usize>| {
         !drawn.iter().any(|&a| drawn.iter().any(|&b| all[a].is_case_of(&all[b])))
     };
-    let draws = (0..DRAWS).map(|again| lots(all.len(), wanted, seed.wrapping_add(again * 7919)));
-    let mut draws = draws.peekable();
-    let first = draws.peek().cloned().unwrap_or_default();
-    draws.find(stand_alone).unwrap_or(first)
+    let draw = |again: u64| lots(all.len(), wanted, seed.wrapping_add(again * 7919));
+    (0..DRAWS).map(draw).find(stand_alone).unwrap_or_else(|| draw(0))
 }
 
 /// Some of `of` numbers, each at most once, in order.
@@ -178,12 +176,12 @@ mod tests {
 
     #[test]
     fn an_effect_is_not_drawn_beside_its_special_case() {
-        let friction = |width: &str| format!("{{ into = \"f\", of = \"v\", {width} }}");
-        let dry = friction("effect.coulomb_friction = { level = -0.1, width = 0.02 }");
-        let bump = friction(
+        let of_speed = |effect: &str| format!("{{ into = \"f\", of = \"v\", {effect} }}");
+        let dry = of_speed("effect.coulomb_friction = { level = -0.1, width = 0.02 }");
+        let bump = of_speed(
             "effect.stribeck_friction = { level = -0.1, extra = -0.1, speed = 0.5, width = 0.02 }",
         );
-        let drag = friction("effect.drag = { coefficient = -0.1 }");
+        let drag = of_speed("effect.drag = { coefficient = -0.1 }");
         let machine: Machine = toml::from_str(&format!(
             "model = \"m.toml\"\nexcitation.filtered_noise = {{ rms = 1.0, cutoff = 1.0, order = 2 }}\nhidden = [{dry}, {bump}, {drag}]"
         ))

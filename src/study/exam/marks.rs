@@ -42,12 +42,10 @@ pub struct Marks {
     pub hits: Vec<Hit>,
     /// Whether the first cause holds one of the hidden effects.
     pub first: bool,
-    /// Names in the first cause's set, itself among them; 0 if there is no cause.
-    pub set_size: usize,
-    /// The others of that set, short.
-    pub beside: Vec<String>,
     /// Headlines of the causes, short; faults of the data left out.
     pub found: Vec<String>,
+    /// The others of the first one's set, short.
+    pub beside: Vec<String>,
     /// The verdict.
     pub verdict: String,
     /// Share of the mean square removed on a third record without noise; none with nothing
@@ -104,6 +102,11 @@ fn covers(cause: &Cause, truth: &Placed) -> Vec<bool> {
 }
 
 impl Marks {
+    /// Names in the first cause's set, itself among them; 0 if there is no cause.
+    pub fn set_size(&self) -> usize {
+        self.found.first().map_or(0, |_| 1 + self.beside.len())
+    }
+
     /// Marks a finding.
     pub(super) fn of(
         case: &Case,
@@ -137,9 +140,8 @@ impl Marks {
             case: case.clone(),
             system: machine.name(),
             first: causes.first().is_some_and(|c| hidden.iter().any(|n| hit(c, n) > Hit::Missed)),
-            set_size: causes.first().map_or(0, |c| 1 + c.indistinguishable.len()),
-            beside: causes.first().map_or(vec![], |c| beside(c)),
             found: causes.iter().map(|c| headline(c)).collect(),
+            beside: causes.first().map_or(vec![], |c| beside(c)),
             verdict: verdict(finding.verdict).into(),
             gain_covered: removed
                 .filter(|_| !causes.is_empty())

@@ -89,7 +89,9 @@ impl Tally {
             exact: share(guilty().map(|m| m.hits.iter().all(|h| *h == Hit::Exact))),
             imitated: share(guilty().map(|m| m.imitated())),
             spurious: share(marks.iter().map(|m| m.spurious() > 0)).unwrap_or(0.0),
-            small_sets: share(marks.iter().filter(|m| m.set_size > 0).map(|m| m.set_size <= 3)),
+            small_sets: share(
+                marks.iter().map(|m| m.set_size()).filter(|&n| n > 0).map(|n| n <= 3),
+            ),
             removed_median: median(removed().collect()),
             mostly_removed: share(removed().map(|r| r >= 0.9)),
             unexplained: share(marks.iter().map(|m| m.verdict == "unexplained")).unwrap_or(0.0),

@@ -117,7 +117,7 @@ impl ExamResult {
                 c.seed,
                 m.all(),
                 m.found.join(" + "),
-                m.set_size,
+                m.set_size(),
                 m.verdict,
                 m.seconds
             );
