@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::problem::{Grain, Model, Part, Problem};
+use super::problem::{Grain, Model, Part, Problem, Simulated};
 use crate::statistics::deviation;
 use crate::system::Base;
 
@@ -11,7 +11,7 @@ const TOO_COARSE: f64 = 0.25;
 
 /// Error of rough steps, as a share of the outputs' spread, at which the direction of a
 /// small change is still right.
-const ROUGH: f64 = 0.02;
+pub(super) const ROUGH: f64 = 0.02;
 
 impl Problem<'_> {
     /// Picks the fewest steps whose error about this model is far below its residual, and
@@ -20,28 +20,10 @@ impl Problem<'_> {
         self.correction = None;
         let Some(fine) = self.simulate(model, Grain::Fine) else { return };
         let residual = self.distance(&fine, &self.y);
-        let spread: f64 = self
-            .y
-            .iter()
-            .zip(&self.scale)
-            .enumerate()
-            .map(|(o, (y, s))| (deviation(&self.counted(o, y, Part::All)) / s).powi(2))
-            .sum::<f64>()
-            .sqrt();
+        let spread = self.spread();
         let allowed = (0.25 * residual).min(0.01 * spread);
-        let n = self.base.substeps;
-        let mut tried = vec![1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 50, 100, 200, 500, 1000];
-        tried.retain(|&count| count <= n / 2);
         let mut rough = None;
-        for count in tried {
-            let Ok(mut base) = Base::new(
-                self.system.model.as_ref(),
-                &self.system.sampling,
-                self.base.sampling_time,
-            ) else {
-                return;
-            };
-            base.substeps = count;
+        for base in self.coarser() {
             self.take_steps(Arc::new(base), None);
             let Some(coarse) = self.simulate(model, Grain::Coarse) else { continue };
             let off = self.distance(&coarse, &fine);
@@ -86,10 +68,45 @@ impl Problem<'_> {
         })
     }
 
-    /// Takes the integrator's own steps from now on.
-    pub fn take_own_steps(&mut self) {
+    /// Takes the integrator's own steps from now on; rough ones are as few as show the direction
+    /// of small changes about all of these models.
+    pub fn take_own_steps(&mut self, models: &[&Model]) {
         self.correction = None;
-        self.take_steps(self.base.clone(), None);
+        let spread = self.spread();
+        let fine: Vec<Simulated> = models.iter().map(|m| self.simulate(m, Grain::Fine)).collect();
+        let mut rough = None;
+        for base in self.coarser() {
+            self.take_steps(Arc::new(base), None);
+            let near = |(model, fine): (&&Model, &Simulated)| {
+                let pair = fine.as_ref().zip(self.simulate(model, Grain::Coarse));
+                pair.is_some_and(|(fine, y)| self.distance(&y, fine) < ROUGH * spread)
+            };
+            if models.iter().zip(&fine).all(near) {
+                rough = Some(self.coarse.clone());
+                break;
+            }
+        }
+        self.take_steps(self.base.clone(), rough);
+    }
+
+    /// The model with fewer steps than its own, fewest first.
+    fn coarser(&self) -> Vec<Base> {
+        let most = self.base.substeps / 2;
+        let counts = [1, 2, 3, 4, 5, 6, 8, 10, 15, 20, 30, 50, 100, 200, 500, 1000];
+        let with = |substeps| {
+            let model = self.system.model.as_ref();
+            let base = Base::new(model, &self.system.sampling, self.base.sampling_time);
+            Some(Base { substeps, ..base.ok()? })
+        };
+        counts.into_iter().filter(|&count| count <= most).filter_map(with).collect()
+    }
+
+    /// Spread of all outputs together, in units of the scales.
+    fn spread(&self) -> f64 {
+        let of = |(o, (y, s)): (usize, (&Vec<f64>, &f64))| {
+            (deviation(&self.counted(o, y, Part::All)) / s).powi(2)
+        };
+        self.y.iter().zip(&self.scale).enumerate().map(of).sum::<f64>().sqrt()
     }
 
     /// Sets what coarse and rough steps are.

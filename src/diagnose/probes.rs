@@ -81,6 +81,17 @@ impl Sharing<'_, '_> {
     }
 }
 
+/// Largest size that a probe of this sign may have.
+pub(super) fn limit(cause: &Candidate, which: usize, sign: f64) -> f64 {
+    match cause.linear.get(which) {
+        Some(&knob) => {
+            let (min, max) = cause.bounds(knob);
+            if sign > 0.0 { max } else { min.abs() }
+        }
+        None => 1.0,
+    }
+}
+
 /// Simulates probes until each has an effect between `share * target` and three times the
 /// target; gives back the effect per unit of those that have.
 pub(super) fn steer(
@@ -132,13 +143,7 @@ pub(super) fn steer(
                     probe.size *= 0.1;
                     continue;
                 }
-                let limit = match cause.linear.get(probe.which) {
-                    Some(&knob) => {
-                        let (min, max) = cause.bounds(knob);
-                        if probe.size > 0.0 { max } else { min.abs() }
-                    }
-                    None => 1.0,
-                };
+                let limit = limit(cause, probe.which, probe.size);
                 let last = attempt + 1 == ATTEMPTS || probe.size.abs() >= limit && effect < target;
                 if effect < 1e-12 * target || effect == 0.0 {
                     if probe.size.abs() >= limit {

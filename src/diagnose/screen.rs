@@ -3,13 +3,17 @@
 use std::sync::Arc;
 
 use super::candidate::Candidate;
+use super::grain::ROUGH;
 use super::nuisance::Nuisance;
-use super::probes::{Probe, Sharing, steer};
+use super::probes::{Probe, Sharing, limit, steer};
 use super::problem::{Grain, Model, Part, Problem, Span};
 use crate::statistics::{add_to_basis, deviation, dot, project, rms, wald};
 
 /// Candidates that are probed at the residual's own size too.
 const SECANTS: usize = 48;
+
+/// Error of rough steps, as a share of the outputs' spread, beyond which they are not used.
+const TOO_ROUGH: f64 = 2.0 * ROUGH;
 
 /// What the screen says of one candidate.
 #[derive(Debug, Clone)]
@@ -71,7 +75,9 @@ pub(crate) fn screen(
     // baseline may be too rough about this model
     let rough = problem.job(model, Grain::Rough).and_then(|job| {
         let y = problem.run(&[job], Span::Fit).swap_remove(0)?;
-        Some(problem.residual(&y, Part::Fit))
+        let rough = problem.residual(&y, Part::Fit);
+        let off: Vec<f64> = rough.iter().zip(&r).map(|(a, b)| a - b).collect();
+        (rms(&off) < TOO_ROUGH * spread).then_some(rough)
     });
     let grain = if rough.is_some() { Grain::Rough } else { Grain::Coarse };
     let rough = rough.unwrap_or_else(|| r.clone());
@@ -111,6 +117,7 @@ pub(crate) fn screen(
     // probes as large as what is to be explained: the secant
     if residual > 2.0 * gentle {
         let mut probes = vec![];
+        let target = 0.7 * residual;
         // those that explain next to nothing to first order are not looked at again
         let mut order: Vec<usize> = (0..candidates.len()).filter(|&c| best[c].is_some()).collect();
         let explained = |c: usize| best[c].as_ref().map_or(0.0, |b| b.explained);
@@ -130,7 +137,8 @@ pub(crate) fn screen(
                     _ => &[1.0, -1.0],
                 };
                 for sign in signs {
-                    let size = size.abs() * sign;
+                    // as large as the tangent says
+                    let size = (size.abs() * target / gentle).min(limit(cause, 0, *sign)) * sign;
                     probes.push(Probe {
                         candidate: c,
                         start,
@@ -142,7 +150,6 @@ pub(crate) fn screen(
                 }
             }
         }
-        let target = 0.7 * residual;
         for (probe, column) in
             steer(problem, &mut sharing, candidates, &mut probes, &rough, (0.3, target), false)
         {

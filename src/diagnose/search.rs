@@ -22,6 +22,8 @@ pub(super) const ACCEPT: f64 = 4.0;
 const ACCEPT_INDEPENDENT: f64 = 7.0;
 /// Dependence on the inputs at which two causes are looked for where one alone is not enough.
 const DEPENDS: f64 = 4.0;
+/// Share of a mean square that is far less.
+const FAR_LESS: f64 = 0.25;
 
 /// One named cause with everything that cannot be told from it.
 #[derive(Debug, Clone)]
@@ -73,6 +75,8 @@ pub(crate) struct Search<'a, 'b> {
     /// Outputs of a model, and the score by which it must not be better than the best single
     /// cause: the search is given up otherwise.
     pub rival: Option<(Arc<Vec<Vec<f64>>>, f64)>,
+    /// Outputs of a story that is already told, with names.
+    pub told: Option<Arc<Vec<Vec<f64>>>>,
     pub(super) accept: f64,
 }
 
@@ -85,8 +89,16 @@ impl<'a, 'b> Search<'a, 'b> {
         most: usize,
         watch: &'a dyn Watch,
     ) -> Self {
-        let (share, accept) = ((0.0, 1.0), ACCEPT);
-        Self { problem, nominal, nuisance, allowed, most, watch, share, rival: None, accept }
+        let (share, accept, rival, told) = ((0.0, 1.0), ACCEPT, None, None);
+        Self { problem, nominal, nuisance, allowed, most, watch, share, rival, told, accept }
+    }
+
+    /// Whether a story that is told already leaves far less than this model: then nothing is
+    /// gained by a law without a name.
+    fn is_told_better(&self, model: &Model) -> bool {
+        let (Some(told), Some(y)) = (&self.told, self.present(model)) else { return false };
+        let held = |y: &[Vec<f64>]| self.problem.mean_square(y, Part::Choose);
+        self.score(&y, told) > ACCEPT && held(told) < FAR_LESS * held(&y)
     }
 
     /// Whether the rival is clearly better than the best single cause.
@@ -283,6 +295,8 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         if !given_up {
             self.split(&mut model, &mut slots);
+        }
+        if !given_up && !self.is_told_better(&model) {
             self.shapeless(&mut model, &mut slots);
             self.learned(&mut model, &mut slots);
         }

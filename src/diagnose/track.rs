@@ -95,7 +95,10 @@ impl<'a, 'b> Tracks<'a, 'b> {
         let on_free = if clean {
             self.carried_over(&free, start, &trusted)
         } else {
-            let found = self.search(free.clone(), start, (0.6, 0.95), None);
+            let mut search = self.begin(free.clone(), self.most);
+            search.share = (0.6, 0.95);
+            search.told = (trusted.structural() > 0 && !drawn).then(|| trusted.y.clone());
+            let found = search.run(start.clone());
             found.and_then(|found| self.finish(Track::ParametersFree, found, free.clone()))
         };
         let simpler = (clean && trusted.structural() > 1).then_some(moved).flatten();

@@ -1,9 +1,10 @@
 //! Tests that stay honest when residuals are not white: everything is judged block by
 //! block, with blocks as long as the errors remember.
 
-use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
+
+use super::plans;
 
 /// Blocks at most and at least.
 const MOST: usize = 40;
@@ -59,9 +60,7 @@ pub(crate) fn autocorrelation(x: &[f64], lags: usize) -> Vec<f64> {
     let n = x.len();
     let size = (2 * n).next_power_of_two();
     let centre = mean(x);
-    let mut planner = RealFftPlanner::<f64>::new();
-    let forward = planner.plan_fft_forward(size);
-    let backward = planner.plan_fft_inverse(size);
+    let (forward, backward) = (plans::forward(size), plans::inverse(size));
     let mut time: Vec<f64> = x.iter().map(|v| v - centre).collect();
     time.resize(size, 0.0);
     let mut spectrum = forward.make_output_vec();

@@ -4,6 +4,7 @@ mod averaged;
 mod basis;
 mod blocks;
 mod lines;
+mod plans;
 mod sandwich;
 mod spectrum;
 
