@@ -8,9 +8,8 @@ use super::error::DiagnoseError;
 use super::finding::{Alternative, Cause, Value};
 use super::finished::Finished;
 use super::floor::Floor;
-use super::nuisance::Key;
-use super::precision::standard_error;
 use super::problem::{Grain, Model};
+use super::profile;
 use super::refit::{Refit, refit};
 use super::score::{Scored, TestData, removed};
 use super::sets::SET;
@@ -152,9 +151,8 @@ impl Teller<'_, '_> {
         let added = &chosen.fitted.model.added[index];
         let cause = &added.cause;
         let knobs = cause.clipped(&added.knobs, self.problem.step(Grain::Fine));
-        let error = |i: usize| {
-            standard_error(&chosen.fitted, chosen.covariance.as_ref(), Key::Knob(index, i))
-        };
+        let errors = profile::errors(self.problem, chosen, index);
+        let error = |i: usize| errors[i];
         if let Wire::Parameter(p) = cause.wire {
             return vec![Value {
                 name: "value".into(),

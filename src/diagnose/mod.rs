@@ -32,6 +32,7 @@ mod precision;
 mod prepared;
 mod probes;
 mod problem;
+mod profile;
 mod prune;
 mod readback;
 mod records;

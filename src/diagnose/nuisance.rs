@@ -35,6 +35,8 @@ pub(crate) struct Nuisance {
     /// Free parameters whose prior has been released.
     pub released: Vec<usize>,
     pub segments: usize,
+    /// What stays where it is.
+    pub held: Option<Key>,
 }
 
 impl Nuisance {
@@ -46,6 +48,7 @@ impl Nuisance {
             free: vec![],
             released: vec![],
             segments: problem.drive.segments.len().min(SEGMENTS),
+            held: None,
         }
     }
 
@@ -73,6 +76,7 @@ impl Nuisance {
             let cause = &added.cause;
             keys.extend(cause.linear.iter().chain(&cause.refine).map(|&i| Key::Knob(a, i)));
         }
+        keys.retain(|key| self.held != Some(*key));
         keys
     }
 
