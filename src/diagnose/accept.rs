@@ -18,6 +18,8 @@ const CONFIRMED: f64 = 2.5;
 const LIKELIER: f64 = 4.0;
 /// Score of whiteness below which a residual has no memory that could pass for a cause.
 const WHITE: f64 = 3.0;
+/// Share of a mean square that is far less.
+const FAR_LESS: f64 = 0.25;
 /// Trials whose steps are checked, and those that are judged again with finer ones.
 const LEADING: usize = 4;
 const JUDGED_AGAIN: usize = 8;
@@ -52,6 +54,14 @@ impl Search<'_, '_> {
     /// Whether it has led to where nothing but noise is left.
     pub(super) fn has_led_on(&self, before: &[Vec<f64>], model: &Model) -> bool {
         self.present(model).is_some_and(|y| self.is_noise(&y) && self.accepts(before, &y, false))
+    }
+
+    /// Whether a story that is told already leaves far less than this model: then nothing is
+    /// gained by a law without a name.
+    pub(super) fn is_told_better(&self, model: &Model) -> bool {
+        let (Some(told), Some(y)) = (&self.told, self.present(model)) else { return false };
+        let held = |y: &[Vec<f64>]| self.problem.mean_square(y, Part::Choose);
+        self.score(&y, told) > ACCEPT && held(told) < FAR_LESS * held(&y)
     }
 
     /// Whether the later of two causes makes the earlier one, a compromise, superfluous.

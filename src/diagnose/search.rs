@@ -22,8 +22,6 @@ pub(super) const ACCEPT: f64 = 4.0;
 const ACCEPT_INDEPENDENT: f64 = 7.0;
 /// Dependence on the inputs at which two causes are looked for where one alone is not enough.
 const DEPENDS: f64 = 4.0;
-/// Share of a mean square that is far less.
-const FAR_LESS: f64 = 0.25;
 
 /// One named cause with everything that cannot be told from it.
 #[derive(Debug, Clone)]
@@ -91,14 +89,6 @@ impl<'a, 'b> Search<'a, 'b> {
     ) -> Self {
         let (share, accept, rival, told) = ((0.0, 1.0), ACCEPT, None, None);
         Self { problem, nominal, nuisance, allowed, most, watch, share, rival, told, accept }
-    }
-
-    /// Whether a story that is told already leaves far less than this model: then nothing is
-    /// gained by a law without a name.
-    fn is_told_better(&self, model: &Model) -> bool {
-        let (Some(told), Some(y)) = (&self.told, self.present(model)) else { return false };
-        let held = |y: &[Vec<f64>]| self.problem.mean_square(y, Part::Choose);
-        self.score(&y, told) > ACCEPT && held(told) < FAR_LESS * held(&y)
     }
 
     /// Whether the rival is clearly better than the best single cause.
