@@ -103,8 +103,7 @@ impl Search<'_, '_> {
         if !self.problem.are_too_coarse(&leading) {
             return false;
         }
-        let leading: Vec<Model> = leading.into_iter().cloned().collect();
-        self.problem.take_own_steps(&leading.iter().collect::<Vec<_>>());
+        self.problem.take_own_steps(&leading);
         trials.truncate(JUDGED_AGAIN);
         let models: Vec<Model> = trials.iter().map(|t| t.model.clone()).collect();
         let fitted = refit(self.problem, &self.nuisance, &models, Refit::search());

@@ -285,10 +285,10 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         if !given_up {
             self.split(&mut model, &mut slots);
-        }
-        if !given_up && !self.is_told_better(&model) {
-            self.shapeless(&mut model, &mut slots);
-            self.learned(&mut model, &mut slots);
+            if !self.is_told_better(&model) {
+                self.shapeless(&mut model, &mut slots);
+                self.learned(&mut model, &mut slots);
+            }
         }
         self.tell(1.0, "done");
         let spikes = self.problem.spikes();
