@@ -6,7 +6,7 @@ use super::refit::{Refit, refit};
 use super::search::{ACCEPT, Search};
 use super::sets::AS_GOOD;
 use super::stage::{Trial, trial};
-use crate::statistics::whiteness;
+use crate::statistics::{deviation, mean, whiteness};
 
 /// A mean square cut to less than this counts as a strong improvement.
 const STRONG: f64 = 0.6;
@@ -18,6 +18,8 @@ const CONFIRMED: f64 = 2.5;
 const LIKELIER: f64 = 4.0;
 /// Score of whiteness below which a residual has no memory that could pass for a cause.
 const WHITE: f64 = 3.0;
+/// Standard errors within which a mean is taken for 0.
+const CENTRED: f64 = 4.0;
 /// Share of a mean square that is far less.
 const FAR_LESS: f64 = 0.25;
 /// Trials whose steps are checked, and those that are judged again with finer ones.
@@ -119,9 +121,19 @@ impl Search<'_, '_> {
         true
     }
 
-    /// Whether a model leaves nothing but white noise, so that nothing more can be found.
+    /// Whether a model leaves nothing but white noise about 0, so that nothing more can be found.
     pub(super) fn is_noise(&self, y: &[Vec<f64>]) -> bool {
-        self.is_white(y) && dependence(self.problem, self.nominal, y) < 2.0
+        self.is_white(y)
+            && self.is_centred(y)
+            && dependence(self.problem, self.nominal, y) < 2.0
+    }
+
+    /// Whether the mean of what is left is none: it depends on no input and has no memory.
+    fn is_centred(&self, y: &[Vec<f64>]) -> bool {
+        let r = self.problem.residual(y, Part::All);
+        let n = r.len() / self.problem.y.len();
+        let limit = CENTRED / (n as f64).sqrt();
+        r.chunks(n).all(|r| mean(r).abs() <= limit * deviation(r))
     }
 
     /// Whether one more cause leaves nothing but noise, so that pairs need not be looked at.
