@@ -123,9 +123,7 @@ impl Search<'_, '_> {
 
     /// Whether a model leaves nothing but white noise about 0, so that nothing more can be found.
     pub(super) fn is_noise(&self, y: &[Vec<f64>]) -> bool {
-        self.is_white(y)
-            && self.is_centred(y)
-            && dependence(self.problem, self.nominal, y) < 2.0
+        self.is_white(y) && self.is_centred(y) && dependence(self.problem, self.nominal, y) < 2.0
     }
 
     /// Whether the mean of what is left is none: it depends on no input and has no memory.

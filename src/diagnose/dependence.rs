@@ -1,6 +1,6 @@
 //! Whether what a model leaves depends on the inputs: what noise, coloured or not, never does.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::nominal::Nominal;
 use super::problem::Problem;
@@ -23,65 +23,87 @@ const MOST: usize = 20_000;
 /// Score that a regression of the residual on lagged coordinates and inputs (z, z |z|, z^2,
 /// sign z), made on the first 70 %, predicts the rest better than nothing.
 pub(crate) fn dependence(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>]) -> f64 {
-    (0..problem.y.len()).map(|o| of_output(problem, nominal, y, o)).fold(0.0, f64::max)
+    let Some(features) = nominal.features(problem) else { return 0.0 };
+    (0..problem.y.len()).map(|o| features.predict(problem, y, o)).fold(0.0, f64::max)
 }
 
-fn of_output(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>], o: usize) -> f64 {
-    let end = problem.len().min(nominal.series(0).len());
-    let from = end.saturating_sub(MOST);
-    let known = |k: usize| problem.weight[o][k] > 0.0;
-    let r: Vec<f64> =
-        (from..end).map(|k| if known(k) { problem.y[o][k] - y[o][k] } else { 0.0 }).collect();
-    let n = r.len();
-    let reach = REACH.min(n / 8);
-    let split = (0.7 * n as f64) as usize;
-    if n < 100 || split <= reach + 20 || deviation(&r) == 0.0 {
-        return 0.0;
-    }
-    let rows = split - reach;
-    let columns = features(problem, nominal, from, n, reach, rows);
-    let centres: Vec<(f64, f64)> = columns
-        .iter()
-        .map(|c| {
-            let part = &c[reach..split];
-            (mean(part), deviation(part))
-        })
-        .collect();
-    let used: Vec<usize> = (0..columns.len())
-        .filter(|&j| centres[j].1 > 1e-12 * centres[j].0.abs() && centres[j].1 > 0.0)
-        .collect();
-    let scaled = |j: usize, k: usize| (columns[j][k] - centres[j].0) / centres[j].1;
-    let a = DMatrix::from_fn(rows, used.len(), |i, j| scaled(used[j], reach + i));
-    let level = mean(&r[reach..split]);
-    let b = DVector::from_fn(rows, |i, _| r[reach + i] - level);
-    let gram = a.transpose() * &a;
-    let right = a.transpose() * &b;
-    let held: Vec<f64> = r[split..].iter().map(|v| v - level).collect();
-    let mut best: Option<(f64, f64)> = None;
-    for ridge in [1e-2, 1e-1, 1.0, 10.0] {
-        let mut damped = gram.clone();
-        for j in 0..used.len() {
-            damped[(j, j)] += ridge * rows as f64;
+/// What a residual is regressed on, the same for every residual of a record.
+pub(crate) struct Features {
+    from: usize,
+    end: usize,
+    /// Rows of the fitted part, after the lags, and of the rest.
+    fitted: DMatrix<f64>,
+    held: DMatrix<f64>,
+    reach: usize,
+    /// Factors of the normal equations, one per ridge.
+    factors: Vec<Cholesky<f64, Dyn>>,
+}
+
+impl Features {
+    /// The features along a record; `None` where it is too short.
+    pub fn new(problem: &Problem<'_>, nominal: &Nominal) -> Option<Self> {
+        let end = problem.len().min(nominal.series(0).len());
+        let from = end.saturating_sub(MOST);
+        let n = end - from;
+        let reach = REACH.min(n / 8);
+        let split = (0.7 * n as f64) as usize;
+        if n < 100 || split <= reach + 20 {
+            return None;
         }
-        let Some(factor) = damped.cholesky() else { continue };
-        let w = factor.solve(&right);
-        let predicted: Vec<f64> = (split..n)
-            .map(|k| used.iter().zip(w.iter()).map(|(&j, w)| w * scaled(j, k)).sum())
-            .collect();
-        let left: f64 = held.iter().zip(&predicted).map(|(r, p)| (r - p).powi(2)).sum();
+        let rows = split - reach;
+        let mut columns = lagged(problem, nominal, from, n, reach, rows);
+        columns.retain_mut(|column| {
+            let part = &column[reach..split];
+            let (centre, size) = (mean(part), deviation(part));
+            column.iter_mut().for_each(|v| *v = (*v - centre) / size);
+            size > 1e-12 * centre.abs() && size > 0.0
+        });
+        let fitted = DMatrix::from_fn(rows, columns.len(), |i, j| columns[j][reach + i]);
+        let held = DMatrix::from_fn(n - split, columns.len(), |i, j| columns[j][split + i]);
+        let gram = fitted.tr_mul(&fitted);
+        let damped = |ridge: f64| {
+            let mut damped = gram.clone();
+            (0..columns.len()).for_each(|j| damped[(j, j)] += ridge * rows as f64);
+            damped.cholesky()
+        };
+        let factors = [1e-2, 1e-1, 1.0, 10.0].into_iter().filter_map(damped).collect();
+        Some(Self { from, end, fitted, held, reach, factors })
+    }
+
+    /// Score that an output's residual is predicted.
+    fn predict(&self, problem: &Problem<'_>, y: &[Vec<f64>], o: usize) -> f64 {
+        let known = |k: usize| problem.weight[o][k] > 0.0;
+        let off = |k: usize| if known(k) { problem.y[o][k] - y[o][k] } else { 0.0 };
+        let r: Vec<f64> = (self.from..self.end).map(off).collect();
+        if deviation(&r) == 0.0 {
+            return 0.0;
+        }
+        let split = self.reach + self.fitted.nrows();
+        let level = mean(&r[self.reach..split]);
+        let b = DVector::from_iterator(
+            split - self.reach,
+            r[self.reach..split].iter().map(|v| v - level),
+        );
+        let right = self.fitted.tr_mul(&b);
+        let held: Vec<f64> = r[split..].iter().map(|v| v - level).collect();
         let all: f64 = held.iter().map(|r| r * r).sum();
-        let ff: Vec<f64> = predicted.iter().map(|p| p * p).collect();
-        let fr: Vec<f64> = predicted.iter().zip(&held).map(|(p, r)| p * r).collect();
-        let share = 1.0 - left / all;
-        if best.is_none_or(|(s, _)| share > s) {
-            best = Some((share, mixture(&ff, &fr)));
+        let mut best: Option<(f64, f64)> = None;
+        for factor in &self.factors {
+            let predicted = &self.held * factor.solve(&right);
+            let left: f64 = held.iter().zip(&predicted).map(|(r, p)| (r - p).powi(2)).sum();
+            let ff: Vec<f64> = predicted.iter().map(|p| p * p).collect();
+            let fr: Vec<f64> = predicted.iter().zip(&held).map(|(p, r)| p * r).collect();
+            let share = 1.0 - left / all;
+            if best.is_none_or(|(s, _)| share > s) {
+                best = Some((share, mixture(&ff, &fr)));
+            }
         }
+        best.map_or(0.0, |(_, score)| score)
     }
-    best.map_or(0.0, |(_, score)| score)
 }
 
 /// Lagged curves of every coordinate and input.
-fn features(
+fn lagged(
     problem: &Problem<'_>,
     nominal: &Nominal,
     from: usize,

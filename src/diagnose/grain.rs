@@ -17,7 +17,7 @@ impl Problem<'_> {
     /// Picks the fewest steps whose error about this model is far below its residual, and
     /// corrects coarse simulations by it from now on.
     pub fn coarsen(&mut self, model: &Model) {
-        self.correction = None;
+        self.set_correction(None);
         let Some(fine) = self.simulate(model, Grain::Fine) else { return };
         let residual = self.distance(&fine, &self.y);
         let spread = self.spread();
@@ -46,8 +46,8 @@ impl Problem<'_> {
             return false;
         }
         let (fine, coarse) = (self.step(Grain::Fine), self.step(Grain::Coarse));
-        models.iter().any(|model| {
-            let blunt = model.added.iter().any(|added| {
+        let blunt = |model: &&Model| {
+            model.added.iter().any(|added| {
                 let mut steep = added.knobs.clone();
                 let knobs = added.cause.card.knobs.iter();
                 knobs.zip(&mut steep).for_each(|(knob, value)| {
@@ -57,31 +57,33 @@ impl Problem<'_> {
                 });
                 let as_fine = added.cause.clipped(&steep, fine);
                 as_fine != added.cause.clipped(&steep, coarse)
-            });
-            let far = || {
-                let own = self.simulate(model, Grain::Fine);
-                own.zip(self.simulate(model, Grain::Coarse)).is_some_and(|(own, coarse)| {
-                    self.distance(&own, &coarse) > TOO_COARSE * self.distance(&coarse, &self.y)
-                })
-            };
-            blunt || far()
-        })
+            })
+        };
+        let far = |(own, coarse): (Simulated, Simulated)| {
+            own.zip(coarse).is_some_and(|(own, coarse)| {
+                self.distance(&own, &coarse) > TOO_COARSE * self.distance(&coarse, &self.y)
+            })
+        };
+        models.iter().any(blunt) || {
+            let own = self.simulate_all(models, Grain::Fine);
+            own.into_iter().zip(self.simulate_all(models, Grain::Coarse)).any(far)
+        }
     }
 
     /// Takes the integrator's own steps from now on; rough ones are as few as show the direction
     /// of small changes about all of these models.
     pub fn take_own_steps(&mut self, models: &[&Model]) {
-        self.correction = None;
+        self.set_correction(None);
         let spread = self.spread();
-        let fine: Vec<Simulated> = models.iter().map(|m| self.simulate(m, Grain::Fine)).collect();
+        let fine = self.simulate_all(models, Grain::Fine);
         let mut rough = None;
         for base in self.coarser() {
             self.take_steps(Arc::new(base), None);
-            let near = |(model, fine): (&&Model, &Simulated)| {
-                let pair = fine.as_ref().zip(self.simulate(model, Grain::Coarse));
-                pair.is_some_and(|(fine, y)| self.distance(&y, fine) < ROUGH * spread)
+            let near = |(y, fine): (&Simulated, &Simulated)| {
+                let pair = y.as_ref().zip(fine.as_ref());
+                pair.is_some_and(|(y, fine)| self.distance(y, fine) < ROUGH * spread)
             };
-            if models.iter().zip(&fine).all(near) {
+            if self.simulate_all(models, Grain::Coarse).iter().zip(&fine).all(near) {
                 rough = Some(self.coarse.clone());
                 break;
             }
@@ -116,6 +118,12 @@ impl Problem<'_> {
         if let Ok(mut plans) = self.plans.lock() {
             plans.retain(|key, _| key.0 == Grain::Fine);
         }
+        self.remembered.forget_coarse();
+    }
+
+    fn set_correction(&mut self, correction: Option<Vec<Vec<f64>>>) {
+        self.correction = correction;
+        self.remembered.forget_coarse();
     }
 
     /// Corrects coarse simulations by their error about this model.
@@ -123,20 +131,20 @@ impl Problem<'_> {
         if self.coarse.substeps == self.base.substeps {
             return;
         }
-        self.correction = None;
+        self.set_correction(None);
         if let Some(fine) = self.simulate(model, Grain::Fine) {
             self.correct(model, &fine);
         }
     }
 
     fn correct(&mut self, model: &Model, fine: &[Vec<f64>]) {
-        self.correction = None;
+        self.set_correction(None);
         let Some(coarse) = self.simulate(model, Grain::Coarse) else { return };
         let off = |(f, c): (&Vec<f64>, &Vec<f64>)| {
             let difference = f.iter().zip(c).map(|(f, c)| f - c);
             difference.map(|d| if d.is_finite() { d } else { 0.0 }).collect()
         };
-        self.correction = Some(fine.iter().zip(coarse.iter()).map(off).collect());
+        self.set_correction(Some(fine.iter().zip(coarse.iter()).map(off).collect()));
     }
 
     /// Root mean square over all outputs of what counts, in units of the scales.

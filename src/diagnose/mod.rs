@@ -39,6 +39,7 @@ mod records;
 mod refit;
 mod regime;
 mod remarks;
+mod remembered;
 mod resembles;
 mod restart;
 mod ridge;

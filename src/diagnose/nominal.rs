@@ -1,5 +1,8 @@
 //! The baseline along the record: what every coordinate does, which way channels push.
 
+use std::sync::OnceLock;
+
+use super::dependence::Features;
 use super::problem::{Grain, Model, Part, Problem};
 use crate::effect::View;
 use crate::model::probe::{Along, Point, slope};
@@ -31,6 +34,8 @@ pub(crate) struct Nominal {
     /// Samples looked at.
     count: usize,
     sampling_time: f64,
+    /// What residuals are regressed on, once somebody asks.
+    features: OnceLock<Option<Features>>,
 }
 
 impl Nominal {
@@ -104,7 +109,13 @@ impl Nominal {
             sizes: n,
             count: known,
             sampling_time: dt,
+            features: OnceLock::new(),
         })
+    }
+
+    /// What residuals of this record are regressed on; `None` where it is too short.
+    pub fn features(&self, problem: &Problem<'_>) -> Option<&Features> {
+        self.features.get_or_init(|| Features::new(problem, self)).as_ref()
     }
 
     /// The factor between the columns of two targets that are parallel everywhere:

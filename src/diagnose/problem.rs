@@ -7,12 +7,13 @@ use std::sync::{Arc, Mutex};
 use rayon::prelude::*;
 
 use super::candidate::{Candidate, Wire};
+use super::remembered::Remembered;
 use crate::system::{Base, Drive, Lane, Placed, Plan, System, SystemError};
 
-/// Lanes that are simulated side by side in one piece of work.
-const TOGETHER: usize = 64;
 /// Lanes that are one block of numbers.
 const PACK: usize = 8;
+/// Blocks that are simulated side by side in one piece of work, at most.
+const TOGETHER: usize = 8;
 
 /// A cause that is part of a model, with its knobs.
 #[derive(Debug, Clone)]
@@ -41,6 +42,15 @@ impl Model {
     /// instruments.
     pub fn known(&self) -> usize {
         self.added.iter().take_while(|added| added.cause.is_known_limit()).count()
+    }
+
+    /// Whether another is the same, number by number.
+    pub fn is(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Added, &Added)| Arc::ptr_eq(&a.cause, &b.cause) && a.knobs == b.knobs;
+        self.theta == other.theta
+            && self.starts == other.starts
+            && self.added.len() == other.added.len()
+            && self.added.iter().zip(&other.added).all(same)
     }
 
     /// Whether another has the same causes, in the same order.
@@ -125,9 +135,11 @@ pub(crate) struct Problem<'a> {
     /// Samples that count: those that are fitted, those that choose.
     pub(super) fit: Vec<Range<usize>>,
     pub(super) choose: Vec<Range<usize>>,
-    /// What coarse steps must be corrected by, from the last call of `correct`.
+    /// What coarse steps must be corrected by; set it with `set_correction`.
     pub(super) correction: Option<Vec<Vec<f64>>>,
     pub(super) plans: Mutex<HashMap<(Grain, Vec<String>), Arc<Plan>>>,
+    /// Simulations that may be asked for again.
+    pub(super) remembered: Remembered,
 }
 
 impl<'a> Problem<'a> {
@@ -190,6 +202,7 @@ impl<'a> Problem<'a> {
             choose,
             correction: None,
             plans: Mutex::new(HashMap::new()),
+            remembered: Remembered::default(),
             system,
             base,
             drive,
@@ -290,27 +303,19 @@ impl<'a> Problem<'a> {
             first.entry(key(i)).or_insert(i);
         }
         order.sort_by_key(|&i| (first[&key(i)], i));
-        // a few lanes are dealt out to all threads; no lane knows which others run beside it
-        let share = jobs.len().div_ceil(rayon::current_num_threads());
-        let together = (share.div_ceil(PACK) * PACK).clamp(PACK, TOGETHER);
-        let mut pieces: Vec<Vec<usize>> = vec![];
-        let mut lanes: usize = 0;
-        let mut previous = usize::MAX;
+        // a new plan begins a new pack of eight; packs are dealt out to all threads alike, and no
+        // lane knows which others run beside it
+        let mut packs: Vec<Vec<usize>> = vec![];
         for i in order {
-            // a new plan begins a new pack of eight
-            if previous != usize::MAX && key(previous) != key(i) {
-                lanes = lanes.div_ceil(PACK) * PACK;
+            match packs.last_mut() {
+                Some(pack) if pack.len() < PACK && key(pack[0]) == key(i) => pack.push(i),
+                _ => packs.push(vec![i]),
             }
-            if pieces.is_empty() || lanes >= together {
-                pieces.push(vec![]);
-                lanes = 0;
-            }
-            if let Some(piece) = pieces.last_mut() {
-                piece.push(i);
-            }
-            lanes += 1;
-            previous = i;
         }
+        let threads = rayon::current_num_threads();
+        let rounds = packs.len().div_ceil(threads * TOGETHER).max(1);
+        let share = packs.len().div_ceil(threads * rounds).max(1);
+        let pieces: Vec<Vec<usize>> = packs.chunks(share).map(<[_]>::concat).collect();
         let done: Vec<Vec<(usize, Simulated)>> =
             pieces.into_par_iter().map(|piece| self.run_piece(jobs, piece, drive)).collect();
         let mut results = vec![None; jobs.len()];
@@ -364,8 +369,20 @@ impl<'a> Problem<'a> {
 
     /// Outputs of one model over the whole record.
     pub fn simulate(&self, model: &Model, grain: Grain) -> Simulated {
-        let job = self.job(model, grain)?;
-        self.run(&[job], Span::Whole).swap_remove(0)
+        self.simulate_all(&[model], grain).swap_remove(0)
+    }
+
+    /// Outputs of several models over the whole record.
+    pub fn simulate_all(&self, models: &[&Model], grain: Grain) -> Vec<Simulated> {
+        let mut answers: Vec<Option<Simulated>> =
+            models.iter().map(|model| self.remembered.recall(model, grain)).collect();
+        let open: Vec<usize> = (0..models.len()).filter(|&i| answers[i].is_none()).collect();
+        let jobs: Vec<Option<Job>> = open.iter().map(|&i| self.job(models[i], grain)).collect();
+        for (&i, y) in open.iter().zip(self.run_built(&jobs, Span::Whole)) {
+            self.remembered.keep(models[i], grain, &y);
+            answers[i] = Some(y);
+        }
+        answers.into_iter().map(Option::flatten).collect()
     }
 }
 

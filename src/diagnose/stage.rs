@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::candidate::{Candidate, Wire};
 use super::nuisance::Nuisance;
 use super::probes::with_candidate;
-use super::problem::{Grain, Model, Part, Problem, Simulated, Span};
+use super::problem::{Grain, Model, Part, Problem, Simulated};
 use super::refit::{Refit, refit};
 use super::scan::{scan_all, squares, starting_points};
 use super::screen::{Scored, Screen, screen};
@@ -224,8 +224,6 @@ fn judge(
         }
     }
     let fitted = refit(problem, nuisance, &models, Refit::search());
-    let mut jobs = vec![];
-    let mut of = vec![];
     let mut best: Vec<Option<(f64, Model)>> = vec![None; chosen.len()];
     for (index, fitted) in owner.into_iter().zip(fitted) {
         let Some(fitted) = fitted else { continue };
@@ -234,19 +232,14 @@ fn judge(
             best[index] = Some((sum, fitted.model));
         }
     }
-    for (index, best) in best.into_iter().enumerate() {
-        let Some((_, fitted)) = best else { continue };
-        if let Some(job) = problem.job(&fitted, Grain::Coarse) {
-            jobs.push(job);
-            of.push((index, fitted));
-        }
-    }
+    let models: Vec<&Model> = best.iter().flatten().map(|(_, model)| model).collect();
+    let mut outputs = problem.simulate_all(&models, Grain::Coarse).into_iter();
     let mut trials = vec![];
-    for ((index, fitted), y) in of.into_iter().zip(problem.run(&jobs, Span::Whole)) {
-        let (scored, _) = &chosen[index];
+    for ((scored, _), best) in chosen.iter().zip(best) {
+        let Some((_, fitted)) = best else { continue };
         let weak = scored.score.abs() < bar;
         let sure = scored.score.abs() > SURE && !is_hum(&scored.cause);
-        let judged = trial(problem, &scored.cause, fitted, y, weak);
+        let judged = trial(problem, &scored.cause, fitted, outputs.next().flatten(), weak);
         trials.extend(judged.map(|trial| Trial { sure, ..trial }));
     }
     trials.sort_by(|a, b| a.held.total_cmp(&b.held));
