@@ -60,7 +60,7 @@ impl Features {
         });
         let fitted = DMatrix::from_fn(rows, columns.len(), |i, j| columns[j][reach + i]);
         let held = DMatrix::from_fn(n - split, columns.len(), |i, j| columns[j][split + i]);
-        let gram = fitted.tr_mul(&fitted);
+        let gram = fitted.transpose() * &fitted;
         let damped = |ridge: f64| {
             let mut damped = gram.clone();
             (0..columns.len()).for_each(|j| damped[(j, j)] += ridge * rows as f64);

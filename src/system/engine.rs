@@ -1,6 +1,7 @@
 //! The simulation: groups of lanes, each with its own effects, through one law.
 
 use crate::model::{Ask, Block, Law};
+use crate::per_isa;
 
 use super::arithmetic::{add, euler, flush, magnitude, move_along, rk4};
 use super::exact::Exact;
@@ -46,6 +47,13 @@ pub(crate) fn simulate<R: EffectNumber>(
     }
     run.last(&mut tracks);
     tracks
+}
+
+per_isa! {
+    /// One stage with whole registers moved at a time: what is stored in pieces is read back late.
+    fn stage['a, R: EffectNumber](run: &mut Run<'a, R>, i: usize, slot: usize, time: f64) {
+        run.rates(i, slot, time);
+    }
 }
 
 /// Working storage of one block: what all packs share.
@@ -327,9 +335,15 @@ impl<'a, R: EffectNumber> Run<'a, R> {
 
     /// Rates of all states at a trial state: stage `i`, with the inputs at `slot`.
     fn stage(&mut self, i: usize, slot: usize, time: f64) {
+        self.drift(time);
+        stage(self, i, slot, time);
+    }
+
+    /// The same, once parameters have drifted.
+    #[inline(always)]
+    fn rates(&mut self, i: usize, slot: usize, time: f64) {
         let base = self.base;
         let n = base.sizes;
-        self.drift(time);
         let x = if i == 0 { &self.x } else { &self.xt };
         let mut u = &self.u[slot];
         if self.inside {

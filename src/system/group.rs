@@ -87,11 +87,13 @@ impl<'a, R: EffectNumber> Group<'a, R> {
     }
 
     /// This group's share of something with `n` values per pack.
+    #[inline(always)]
     pub fn share<'b>(&self, all: &'b [R], n: usize) -> &'b [R] {
         &all[self.first * n..(self.first + self.packs) * n]
     }
 
     /// Its packs among those of all groups.
+    #[inline(always)]
     pub fn places(&self) -> Range<usize> {
         self.first..self.first + self.packs
     }
@@ -153,6 +155,7 @@ impl<'a, R: EffectNumber> Group<'a, R> {
     }
 
     /// Fills what effects look at beyond states, inputs and time.
+    #[inline(always)]
     fn look(&mut self, at: &Instant<'_, R>) {
         let ask = |ask: Ask, out: &mut [R]| {
             let block = Block {
@@ -176,6 +179,7 @@ impl<'a, R: EffectNumber> Group<'a, R> {
     }
 
     /// Evaluates everything that enters own channels or inputs, or has states.
+    #[inline(always)]
     pub fn enter(&mut self, at: &Instant<'_, R>, stage: usize, w: &mut [R], u: &mut [R]) {
         self.look(at);
         let s = if stage == 0 { &self.s } else { &self.st };

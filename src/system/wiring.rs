@@ -180,6 +180,7 @@ impl<R: EffectNumber> Wiring<R> {
     }
 
     /// w and the rates of the own states.
+    #[inline(always)]
     pub fn evaluate(&mut self, plan: &Plan, s: &[R], sight: &Sight<'_, R>) {
         let slot = &plan.slots[self.slot];
         let (m, seen) = (slot.card.states, self.sources.len());
@@ -247,6 +248,7 @@ impl<R: EffectNumber> Wiring<R> {
     }
 
     /// Hands out the rates of the own states.
+    #[inline(always)]
     pub fn write_rates(&self, plan: &Plan, rates: &mut [R]) {
         let slot = &plan.slots[self.slot];
         let m = slot.card.states;
@@ -258,6 +260,7 @@ impl<R: EffectNumber> Wiring<R> {
     }
 
     /// Adds w to the own channels and inputs that it enters.
+    #[inline(always)]
     pub fn scatter(&self, plan: &Plan, own: &mut [R], inputs: &mut [R]) {
         let (nw, nu) = (plan.sizes.w, plan.sizes.u);
         match &self.routes {
