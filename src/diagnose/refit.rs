@@ -142,6 +142,11 @@ fn once(
             let mut points = run.propose();
             if run.wants_columns() {
                 points = Together::new(keys).points(&run.point, &points);
+            } else if let next = run.next_but_one()
+                && !next.is_empty()
+            {
+                // what is asked for after the start is worked out beside it
+                points.extend(Together::new(keys).points(&run.point, &next));
             }
             counts.push(points.len());
             for point in points {
@@ -167,7 +172,12 @@ fn once(
                 let r = problem.residual(&y?, part);
                 r.iter().all(|v| v.is_finite()).then_some(r)
             };
-            let own: Vec<_> = answers.by_ref().take(count).map(residual).collect();
+            let mut own: Vec<_> = answers.by_ref().take(count).map(residual).collect();
+            if !run.next_but_one().is_empty() {
+                let columns = own.split_off(1);
+                run.absorb(own);
+                own = columns;
+            }
             if run.wants_columns() {
                 let present = &run.residuals;
                 run.absorb(Together::new(keys).apart(keys, problem, part, present, own));
