@@ -24,8 +24,11 @@ const SURE: f64 = 8.0;
 /// to be trusted and magnitudes are scanned.
 const SCAN_BELOW: f64 = 0.5;
 pub(super) const SCAN_FAR: f64 = 0.2;
-/// Causes with one unknown that are refitted whatever stands before them.
+/// Causes with one unknown that are refitted whatever stands before them; and at most, where the
+/// screen does not tell them from the best: they explain more than this share of what it does.
 const PLAIN: usize = 4;
+const MOST_PLAIN: usize = 16;
+const CLOSE: f64 = 0.95;
 /// Causes that pass from one store on to another and are refitted whatever stands before them.
 const BALANCED: usize = 2;
 /// Relative difference of two screens' figures below which they are those of twins.
@@ -133,8 +136,13 @@ pub(crate) fn stage(
     chosen.truncate(most);
     // flexible shapes crowd the front where a plain one is too far off to first order
     let plain = screened.scored.iter().filter(|s| passes(s) && s.cause.unknowns() == 1);
-    for scored in plain.take(PLAIN) {
-        if !chosen.iter().any(|(c, _)| c.cause.same_cause(&scored.cause)) {
+    let best = screened.scored.first().map_or(0.0, |s| s.explained);
+    for (number, scored) in plain.take(MOST_PLAIN).enumerate() {
+        // in slow plants most of them look alike, until they are fitted
+        let close = scored.explained > CLOSE * best;
+        if (number < PLAIN || close)
+            && !chosen.iter().any(|(c, _)| c.cause.same_cause(&scored.cause))
+        {
             chosen.push((scored.clone(), None));
         }
     }
