@@ -62,10 +62,13 @@ impl Search<'_, '_> {
                     return;
                 }
                 let cause = model.added[i].cause.clone();
-                let without = self.fitted(model.without(i));
+                // the others stay what they are: fitted alone one of them may take over what was
+                // the part of this one
+                let others = model.without(i);
+                let without = self.fitted(others.clone());
                 let candidates = self.candidates(&without);
                 let Some(found) =
-                    stage(self.problem, &self.nuisance, &without, &candidates, false, 6)
+                    stage(self.problem, &self.nuisance, &others, &candidates, false, 6)
                 else {
                     continue;
                 };

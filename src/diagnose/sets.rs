@@ -113,10 +113,21 @@ impl Search<'_, '_> {
         (named[0], slot)
     }
 
+    /// Settles every name; beside one that has changed, others may do better.
+    pub(super) fn settle_all(&mut self, model: &mut Model, slots: &mut Vec<Slot>) {
+        let named = model.clone();
+        self.settle(model, slots);
+        if !model.same_causes(&named) {
+            self.swap(model, slots);
+            self.settle(model, slots);
+        }
+    }
+
     /// Puts the name that heads each set into the model, given the other causes.
     pub(super) fn settle(&mut self, model: &mut Model, slots: &mut Vec<Slot>) {
         for _ in 0..slots.len() {
-            let without = self.fitted(model.without(0));
+            let rest = model.without(0);
+            let without = self.fitted(rest.clone());
             let Slot { set, others, score } = slots.remove(0);
             let present = model.added[0].clone();
             // a single cause is asked for against all others, one of several against its set,
@@ -127,9 +138,11 @@ impl Search<'_, '_> {
                 false => set.iter().map(|(cause, _)| cause.clone()).collect(),
             };
             let most = if alone { REFITTED } else { 2 * members.len() };
-            let found = stage(self.problem, &self.nuisance, &without, &members, false, most);
+            // as in a swap, the others stay what they are
+            let on = if alone { &without } else { &rest };
+            let found = stage(self.problem, &self.nuisance, on, &members, false, most);
             let mut trials: Vec<Trial> = found.map(|found| found.trials).unwrap_or_default();
-            let joined = self.fitted(without.with(&present.cause, present.knobs.clone()));
+            let joined = self.fitted(on.with(&present.cause, present.knobs.clone()));
             let y = self.present(&joined);
             trials.retain(|t| !t.cause.same_cause(&present.cause));
             trials.extend(trial(self.problem, &present.cause, joined.clone(), y, false));
