@@ -5,7 +5,7 @@ use crate::per_isa;
 
 use super::arithmetic::{add, euler, flush, magnitude, move_along, rk4};
 use super::exact::Exact;
-use super::group::{Group, Instant};
+use super::group::Group;
 use super::lane::{Drive, Lane, Track, pack};
 use super::plan::Plan;
 use super::sampling::{Hold, Method};
@@ -257,17 +257,11 @@ impl<'a, R: EffectNumber> Run<'a, R> {
     /// Outputs now, after everything that sits in their paths.
     fn output(&mut self, h: f64) {
         self.ask(Ask::Output, 0, self.time);
-        let (nx, nu, ny) = (self.base.sizes.x, self.base.sizes.u, self.base.sizes.y);
+        let ny = self.base.sizes.y;
         for group in &mut self.groups {
             let packs = group.places();
-            let at = Instant {
-                law: self.law,
-                theta: group.share(&self.theta_now, self.base.sizes.theta),
-                derived: group.share(&self.derived, self.base.sizes.derived),
-                x: &self.x[packs.start * nx..packs.end * nx],
-                u: &self.u[0][packs.start * nu..packs.end * nu],
-                time: R::constant(self.time),
-            };
+            let seen = [&self.theta_now, &self.derived, &self.x, &self.u[0]];
+            let at = group.instant(self.law, seen, self.time);
             let y = &mut self.y[packs.start * ny..packs.end * ny];
             group.outputs(&at, y, h, self.first);
         }
@@ -297,17 +291,9 @@ impl<'a, R: EffectNumber> Run<'a, R> {
     /// Records the table of sources.
     fn see(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
         let base = self.base;
-        let (nx, nu) = (base.sizes.x, base.sizes.u);
         for (group, tracks) in self.groups.iter_mut().zip(tracks) {
-            let packs = group.places();
-            let at = Instant {
-                law: self.law,
-                theta: group.share(&self.theta_now, base.sizes.theta),
-                derived: group.share(&self.derived, base.sizes.derived),
-                x: &self.x[packs.start * nx..packs.end * nx],
-                u: &self.u[0][packs.start * nu..packs.end * nu],
-                time: R::constant(self.time),
-            };
+            let seen = [&self.theta_now, &self.derived, &self.x, &self.u[0]];
+            let at = group.instant(self.law, seen, self.time);
             let table = group.table(&at);
             let entries = base.sources.entries.len();
             for (l, track) in tracks.iter_mut().enumerate() {
@@ -353,14 +339,8 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             self.w.fill(R::constant(0.0));
             for group in self.groups.iter_mut().filter(|group| group.inside) {
                 let packs = group.places();
-                let at = Instant {
-                    law: self.law,
-                    theta: group.share(&self.theta_now, n.theta),
-                    derived: group.share(&self.derived, n.derived),
-                    x: &x[packs.start * n.x..packs.end * n.x],
-                    u: &u[packs.start * n.u..packs.end * n.u],
-                    time: R::constant(time),
-                };
+                let seen = [&self.theta_now, &self.derived, x, u];
+                let at = group.instant(self.law, seen, time);
                 let w = &mut self.w[packs.start * n.w..packs.end * n.w];
                 let u_in = &mut self.u_in[packs.start * n.u..packs.end * n.u];
                 group.enter(&at, i, w, u_in);

@@ -92,6 +92,25 @@ impl<'a, R: EffectNumber> Group<'a, R> {
         &all[self.first * n..(self.first + self.packs) * n]
     }
 
+    /// Its share of parameters, derived numbers, states and inputs in one instant.
+    #[inline(always)]
+    pub fn instant<'b>(
+        &self,
+        law: &'b dyn Law,
+        [theta, derived, x, u]: [&'b Vec<R>; 4],
+        time: f64,
+    ) -> Instant<'b, R> {
+        let n = self.plan.sizes;
+        Instant {
+            law,
+            theta: self.share(theta, n.theta),
+            derived: self.share(derived, n.derived),
+            x: self.share(x, n.x),
+            u: self.share(u, n.u),
+            time: R::constant(time),
+        }
+    }
+
     /// Its packs among those of all groups.
     #[inline(always)]
     pub fn places(&self) -> Range<usize> {
