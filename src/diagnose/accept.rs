@@ -123,7 +123,12 @@ impl Search<'_, '_> {
 
     /// Whether a model leaves nothing but white noise about 0, so that nothing more can be found.
     pub(super) fn is_noise(&self, y: &[Vec<f64>]) -> bool {
-        self.is_white(y) && self.is_centred(y) && dependence(self.problem, self.nominal, y) < 2.0
+        self.is_centred(y) && self.is_shapeless(y)
+    }
+
+    /// Whether nothing is left that a law without a name could be learned from.
+    pub(super) fn is_shapeless(&self, y: &[Vec<f64>]) -> bool {
+        self.is_white(y) && dependence(self.problem, self.nominal, y) < 2.0
     }
 
     /// Whether the mean of what is left is none: it depends on no input and has no memory.

@@ -52,7 +52,7 @@ impl Search<'_, '_> {
         // a product of two coordinates leaves need not depend on either of them
         let named = |a: &Added| !a.cause.is_known_limit() && !a.cause.is_drawn();
         let open = !model.added.iter().any(named);
-        if self.is_noise(&before) || !asked && !open {
+        if self.is_shapeless(&before) || !asked && !open {
             return false;
         }
         self.tell(0.97, "learning a law");

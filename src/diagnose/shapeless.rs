@@ -31,7 +31,7 @@ impl Search<'_, '_> {
         }
         let Some(before) = self.present(model) else { return false };
         // white noise has nothing in it, whatever its regression on a few curves says
-        if self.is_noise(&before) {
+        if self.is_shapeless(&before) {
             return false;
         }
         self.tell(0.95, "drawing free curves");
