@@ -173,7 +173,7 @@ fn once(
                 r.iter().all(|v| v.is_finite()).then_some(r)
             };
             let mut own: Vec<_> = answers.by_ref().take(count).map(residual).collect();
-            if !run.next_but_one().is_empty() {
+            if run.is_starting() {
                 let columns = own.split_off(1);
                 run.absorb(own);
                 own = columns;

@@ -76,11 +76,16 @@ impl Levenberg {
 
     /// The points that will be asked for once the residuals at the start are known: both can be
     /// worked out side by side. None where the start is known, or nothing will be asked for.
-    pub fn next_but_one(&self) -> Vec<Vec<f64>> {
-        if self.phase != Phase::Start || self.iterations >= self.settings.iterations {
+    pub(crate) fn next_but_one(&self) -> Vec<Vec<f64>> {
+        if !self.is_starting() || self.iterations >= self.settings.iterations {
             return vec![];
         }
         self.beside(&self.differences())
+    }
+
+    /// Whether the residuals at the start are wanted next.
+    pub(crate) fn is_starting(&self) -> bool {
+        self.phase == Phase::Start
     }
 
     /// One point per unknown, moved by its step.
