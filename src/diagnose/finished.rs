@@ -6,10 +6,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::candidate::{NUMBER, Wire};
 use super::finding::{Moved, Track};
+use super::found::Found;
 use super::nuisance::{Key, Nuisance};
 use super::precision::standard_error;
 use super::refit::Fitted;
-use super::search::Found;
 use crate::model::Signals;
 
 /// Standard errors beyond which a parameter counts as moved.

@@ -18,6 +18,7 @@ mod feedback;
 mod finding;
 mod finished;
 mod floor;
+mod found;
 mod grain;
 mod learned;
 mod library;

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::candidate::Candidate;
+use super::found::Slot;
 use super::problem::{Model, Part};
-use super::search::{Search, Slot};
+use super::search::Search;
 use super::stage::{REFITTED, Trial, stage, trial};
 use crate::statistics::rms;
 
