@@ -81,6 +81,11 @@ impl Finished {
         self.causes() == self.fitted.model.known()
     }
 
+    /// Whether one of its causes has no name: a free curve or a learned law.
+    pub(super) fn is_drawn(&self) -> bool {
+        self.fitted.model.added.iter().any(|added| added.cause.is_drawn())
+    }
+
     /// Where the free parameters went.
     pub(super) fn went(&self, signals: &Signals) -> Vec<Moved> {
         let one = |&(p, from): &(usize, f64)| Moved {

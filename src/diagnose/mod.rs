@@ -13,6 +13,7 @@ mod dependence;
 mod diagnosis;
 mod distortion;
 mod error;
+mod exchange;
 mod faults;
 mod feedback;
 mod finding;

@@ -255,7 +255,10 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             // every set is asked for once more, unless somebody waits for the end
             _ if self.watch.stopped() => {}
-            _ => self.settle_all(&mut model, &mut slots),
+            _ => {
+                self.settle_all(&mut model, &mut slots);
+                self.exchange(&mut model, &mut slots);
+            }
         }
         if !given_up {
             self.split(&mut model, &mut slots);

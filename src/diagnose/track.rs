@@ -102,7 +102,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
         // make up for a cause may hide it while they are held
         let hidden = trusted.found_nothing() && self.colour(&trusted.y) > COLOURED;
         // a curve is the last resort: whether moved parameters make it superfluous is asked first
-        let drawn = trusted.fitted.model.added.iter().any(|added| added.cause.is_drawn());
+        let drawn = trusted.is_drawn();
         let explained = settled && trusted.dependence < DEPENDS && !hidden || left < SOLVED;
         let clean = explained && !drawn;
         let on_free = if clean {
@@ -117,7 +117,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
         let simpler = (clean && trusted.structural() > 1).then_some(moved).flatten();
         let simpler = simpler.and_then(|(moved, _)| self.one_cause(&free, &moved));
         let on_free = match (simpler, on_free) {
-            (Some(one), Some(many)) if one.structural() <= many.structural() => {
+            (Some(one), Some(many)) => {
                 Some(if self.evidence(&many, &one) > 0.0 { one } else { many })
             }
             (_, on_free) => on_free,
