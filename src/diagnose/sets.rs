@@ -18,8 +18,8 @@ pub(super) const RULED_OUT: f64 = 6.0;
 /// A cause of the same set gives back less than this share of what the best removes.
 const SHARE_OF_SET: f64 = 0.10;
 /// Square of the difference of two predictions, all samples together, in units of the noise's mean
-/// square, below which no test could tell one from the other.
-const SAME: f64 = 1.0;
+/// square, below which they are one and the same.
+const SAME: f64 = 0.02;
 /// Members of a named set at most.
 pub(super) const SET: usize = 4;
 
