@@ -50,8 +50,7 @@ pub(crate) struct Begun {
 }
 
 impl Found {
-    /// The causes that were named, known limits and free parameters' own aside; none where one
-    /// of them has no name.
+    /// The causes that were named, known limits aside; none where one of them has no name.
     pub fn named(&self) -> Vec<Begun> {
         if self.model.added.iter().any(|added| added.cause.is_drawn()) {
             return vec![];
