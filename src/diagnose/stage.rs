@@ -90,15 +90,14 @@ pub(crate) fn stage(
         let own_bar = if is_hum(&s.cause) { bar + 1.5 } else { bar };
         s.score.abs() > own_bar || !is_hum(&s.cause) && s.explained > LARGE_SHARE * screened.total
     };
-    // where one law of a coordinate has passed, another need but come near; so need all beside a
-    // cause, which may hide them
+    // where one law of a coordinate has passed, another need but come near
     let passed: Vec<Arc<Candidate>> =
         screened.scored.iter().filter(|s| passes_alone(s)).map(|s| s.cause.clone()).collect();
     let beside =
         |c: &Candidate| c.of.is_some() && passed.iter().any(|p| p.into == c.into && p.of == c.of);
     let passes = |s: &Scored| {
         let near = s.score.abs() > NEAR * bar && !is_hum(&s.cause);
-        passes_alone(s) || near && (!first || beside(&s.cause))
+        passes_alone(s) || near && beside(&s.cause)
     };
     let scanned = if let Some(best) = screened.scored.first()
         && (best.explained < SCAN_BELOW * screened.total || screened.far > SCAN_FAR)
