@@ -33,10 +33,6 @@ impl Tracks<'_, '_> {
             _ if (1..=trusted.structural()).contains(&free.structural()) => {
                 !free.moved.is_empty() && self.evidence(&trusted, &free) > DOUBTED
             }
-            // names for what has none while parameters are held
-            _ if trusted.is_drawn() && !free.found_nothing() && !free.is_drawn() => {
-                self.evidence(&trusted, &free) > DOUBTED
-            }
             _ => free.price() < trusted.price(),
         };
         if take_free { (free, Some(trusted)) } else { (trusted, Some(free)) }

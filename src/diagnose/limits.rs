@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use super::candidate::Candidate;
-use super::found::Slot;
 use super::library::library;
 use super::problem::Model;
-use super::search::Search;
+use super::search::{Search, Slot};
 
 /// Samples at a limit, at least, to call it one.
 const COUNT: usize = 8;

@@ -2,9 +2,8 @@
 //! for dry friction and drag.
 
 use super::candidate::Wire;
-use super::found::Slot;
 use super::problem::Model;
-use super::search::Search;
+use super::search::{Search, Slot};
 use super::sets::headed_by;
 use super::stage::{Trial, stage};
 
