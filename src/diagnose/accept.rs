@@ -53,9 +53,13 @@ impl Search<'_, '_> {
             && self.problem.likelier(before, &trial.y) >= LIKELIER
     }
 
-    /// Whether it has led to where nothing but noise is left.
+    /// Whether it has led to proof: to where nothing but noise is left, or to what the blocks of
+    /// the part that chooses leave no doubt of.
     pub(super) fn has_led_on(&self, before: &[Vec<f64>], model: &Model) -> bool {
-        self.present(model).is_some_and(|y| self.is_noise(&y) && self.accepts(before, &y, false))
+        self.present(model).is_some_and(|y| {
+            let is_proven = || self.score(before, &y) >= self.accept;
+            self.accepts(before, &y, false) && (self.is_noise(&y) || is_proven())
+        })
     }
 
     /// Whether a story that is told already leaves far less than this model: then nothing is

@@ -6,10 +6,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::candidate::{NUMBER, Wire};
 use super::finding::{Moved, Track};
+use super::found::Found;
 use super::nuisance::{Key, Nuisance};
 use super::precision::standard_error;
 use super::refit::Fitted;
-use super::search::Found;
 use crate::model::Signals;
 
 /// Standard errors beyond which a parameter counts as moved.
@@ -79,6 +79,11 @@ impl Finished {
     /// Whether no cause was found but what was known before: limits of the instruments.
     pub(super) fn found_nothing(&self) -> bool {
         self.causes() == self.fitted.model.known()
+    }
+
+    /// Whether one of its causes has no name: a free curve or a learned law.
+    pub(super) fn is_drawn(&self) -> bool {
+        self.fitted.model.added.iter().any(|added| added.cause.is_drawn())
     }
 
     /// Where the free parameters went.

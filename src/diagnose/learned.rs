@@ -4,11 +4,12 @@
 use std::sync::Arc;
 
 use super::dependence::{DEPENDS, dependence};
+use super::found::Slot;
 use super::library::{Allowed, library};
 use super::problem::{Added, Grain, Model, Part};
 use super::readback::read;
 use super::refit::{Refit, refit};
-use super::search::{Search, Slot};
+use super::search::Search;
 use super::sets::{AS_GOOD, headed_by};
 use super::sketch::Drawing;
 use super::stage::{REFITTED, Trial, stage, trial};

@@ -3,9 +3,10 @@
 use std::sync::Arc;
 
 use super::candidate::Candidate;
+use super::found::Slot;
 use super::library::library;
 use super::problem::Model;
-use super::search::{Search, Slot};
+use super::search::Search;
 
 /// Samples at a limit, at least, to call it one.
 const COUNT: usize = 8;

@@ -1,8 +1,9 @@
 //! What a later cause makes of earlier ones: some are no longer needed, some have a better one
 //! in their place.
 
+use super::found::Slot;
 use super::problem::{Model, Part};
-use super::search::{Search, Slot};
+use super::search::Search;
 use super::sets::{AS_GOOD, headed_by};
 use super::stage::{stage, trial};
 

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use super::candidate::Candidate;
 use super::dependence::dependence;
+use super::found::{Begun, Found, Slot};
 use super::library::{Allowed, library};
 use super::nominal::Nominal;
 use super::nuisance::Nuisance;
 use super::pairs::{shortlist, stayed};
 use super::problem::{Grain, Model, Part, Problem};
 use super::refit::{Refit, refit};
-use super::screen::Screen;
 use super::sets::headed_by;
 use super::stage::{REFITTED, SCAN_FAR, Trial, stage};
 use crate::statistics::strongest;
@@ -22,43 +22,6 @@ pub(super) const ACCEPT: f64 = 4.0;
 const ACCEPT_INDEPENDENT: f64 = 7.0;
 /// Dependence on the inputs at which two causes are looked for where one alone is not enough.
 const DEPENDS: f64 = 4.0;
-
-/// One named cause with everything that cannot be told from it.
-#[derive(Debug, Clone)]
-pub(crate) struct Slot {
-    /// Members of the set with their share of what the best removes, the headline first.
-    pub set: Vec<(Arc<Candidate>, f64)>,
-    /// Others that were refitted, with the share of the best's gain that they reach.
-    pub others: Vec<(Arc<Candidate>, f64)>,
-    /// Score of the model with it against that without it, on the part that chooses; 0 where the
-    /// two were not compared.
-    pub score: f64,
-}
-
-impl Slot {
-    /// A cause that was compared with no other.
-    pub fn of(cause: &Arc<Candidate>) -> Self {
-        Self { set: vec![(cause.clone(), 1.0)], others: vec![], score: 0.0 }
-    }
-}
-
-/// What a search ended with.
-pub(crate) struct Found {
-    pub model: Model,
-    pub slots: Vec<Slot>,
-    /// The first screen: the ranking for the report.
-    pub first: Option<Screen>,
-    /// The last screen: what would still have been seen.
-    pub last: Option<Screen>,
-    /// Score of the dependence of the first residual on the inputs.
-    pub dependence: f64,
-    /// Samples flagged as spikes, per output.
-    pub spikes: Vec<Vec<usize>>,
-    /// Whether the most causes allowed were reached.
-    pub full: bool,
-    /// Whether it was given up, because its rival was better.
-    pub given_up: bool,
-}
 
 /// A search under way.
 pub(crate) struct Search<'a, 'b> {
@@ -75,6 +38,8 @@ pub(crate) struct Search<'a, 'b> {
     pub rival: Option<(Arc<Vec<Vec<f64>>>, f64)>,
     /// Outputs of a story that is already told, with names.
     pub told: Option<Arc<Vec<Vec<f64>>>>,
+    /// Causes to begin with, where others have named them.
+    pub begun: Vec<Begun>,
     pub(super) accept: f64,
 }
 
@@ -88,7 +53,8 @@ impl<'a, 'b> Search<'a, 'b> {
         watch: &'a dyn Watch,
     ) -> Self {
         let (share, accept, rival, told) = ((0.0, 1.0), ACCEPT, None, None);
-        Self { problem, nominal, nuisance, allowed, most, watch, share, rival, told, accept }
+        let begun = vec![];
+        Self { problem, nominal, nuisance, allowed, most, watch, share, rival, told, begun, accept }
     }
 
     /// Whether the rival is clearly better than the best single cause.
@@ -153,7 +119,12 @@ impl<'a, 'b> Search<'a, 'b> {
         self.tell(0.0, "simulating the baseline");
         self.flag(&start);
         let mut slots: Vec<Slot> = vec![];
-        let start = self.limited(start, &mut slots);
+        let mut start = self.limited(start, &mut slots);
+        let begun = self.begun.len();
+        for Begun { added, slot } in std::mem::take(&mut self.begun) {
+            start.added.push(added);
+            slots.push(slot);
+        }
         let mut model = self.fitted(start);
         self.stand_on(&model);
         let y0 = self.present(&model)?;
@@ -167,7 +138,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let mut full = true;
         let mut given_up = false;
         let mut doubted = None;
-        for number in 0..self.most.max(1) {
+        for number in begun..self.most.max(1) {
             let (at, step) = (number as f64 / (self.most + 1) as f64, 1.0 / (self.most + 1) as f64);
             self.tell(
                 at,
@@ -243,7 +214,8 @@ impl<'a, 'b> Search<'a, 'b> {
                 break;
             };
             if !self.accepts_trial(&before, best) {
-                if number == 0 || number + 1 == self.most || !self.may_lead_on(&before, best) {
+                let hidden = visible || number > 0;
+                if !hidden || number + 1 == self.most || !self.may_lead_on(&before, best) {
                     full = false;
                     break;
                 }
@@ -264,11 +236,13 @@ impl<'a, 'b> Search<'a, 'b> {
             self.prune(&mut model, &mut slots, 1);
             self.swap(&mut model, &mut slots);
             self.prune(&mut model, &mut slots, usize::from(doubted.is_some()));
+            if doubted.as_ref().is_some_and(|(.., y)| self.has_led_on(y, &model)) {
+                self.prune(&mut model, &mut slots, 0);
+                doubted = None;
+            }
             self.stand_on(&model);
         }
-        if let Some((sure, its_slots, y)) = doubted
-            && !self.has_led_on(&y, &model)
-        {
+        if let Some((sure, its_slots, _)) = doubted {
             (model, slots, full) = (sure, its_slots, false);
             self.stand_on(&model);
         }
@@ -281,7 +255,10 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             // every set is asked for once more, unless somebody waits for the end
             _ if self.watch.stopped() => {}
-            _ => self.settle_all(&mut model, &mut slots),
+            _ => {
+                self.settle_all(&mut model, &mut slots);
+                self.exchange(&mut model, &mut slots);
+            }
         }
         if !given_up {
             self.split(&mut model, &mut slots);

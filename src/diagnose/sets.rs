@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::candidate::Candidate;
+use super::found::Slot;
 use super::problem::{Model, Part};
-use super::search::{Search, Slot};
+use super::search::Search;
 use super::stage::{REFITTED, Trial, stage, trial};
 use crate::statistics::rms;
 
@@ -13,18 +14,19 @@ pub(super) const AS_GOOD: f64 = 2.0;
 /// Score on all data that tells two causes apart which the part that chooses does not.
 const TOLD_APART: f64 = 3.0;
 /// Logarithm of the odds, numbers paid for, at which one of two causes is ruled out by the other.
-const RULED_OUT: f64 = 6.0;
+pub(super) const RULED_OUT: f64 = 6.0;
 /// A cause of the same set gives back less than this share of what the best removes.
 const SHARE_OF_SET: f64 = 0.10;
+/// Square of the difference of two predictions, all samples together, in units of the noise's mean
+/// square, below which they are one and the same.
+const SAME: f64 = 0.02;
 /// Members of a named set at most.
 pub(super) const SET: usize = 4;
 
 impl Search<'_, '_> {
     /// Whether `a` explains as well as `b`, given what stood before.
     pub(super) fn as_good(&self, a: &Trial, b: &Trial, before: f64) -> bool {
-        let left = |t: &Trial| self.problem.residual(&t.y, Part::All);
-        let (ra, rb) = (left(a), left(b));
-        let apart: f64 = ra.iter().zip(&rb).map(|(a, b)| (a - b).powi(2)).sum();
+        let (apart, ra, rb) = self.apart(a, b);
         // predictions closer than two standard deviations of the noise, all samples together,
         // cannot be told apart whatever the score says; and the best of many on one part of the
         // record has to be better on all of it too
@@ -60,11 +62,26 @@ impl Search<'_, '_> {
         self.choose_from(trials, before, if set.is_empty() { all } else { set })
     }
 
+    /// Whether law `a` has more numbers than `b` and yet does the same: a clearance that is never
+    /// entered is a constant force.
+    fn is_no_more_than(&self, a: &Trial, b: &Trial) -> bool {
+        a.cause.unknowns() > b.cause.unknowns() && self.apart(a, b).0 < SAME * b.held
+    }
+
+    /// Square of the difference of two predictions, all samples together, and what each leaves.
+    fn apart(&self, a: &Trial, b: &Trial) -> (f64, Vec<f64>, Vec<f64>) {
+        let left = |t: &Trial| self.problem.residual(&t.y, Part::All);
+        let (ra, rb) = (left(a), left(b));
+        (ra.iter().zip(&rb).map(|(a, b)| (a - b).powi(2)).sum(), ra, rb)
+    }
+
     /// What is as good as the best.
     fn set(&self, trials: &[Trial], before: f64) -> Vec<usize> {
         let mut set: Vec<usize> = (0..trials.len())
             .filter(|&i| i == 0 || self.as_good(&trials[i], &trials[0], before))
             .collect();
+        let all = set.clone();
+        set.retain(|&i| !all.iter().any(|&j| self.is_no_more_than(&trials[i], &trials[j])));
         set.sort_by(|&i, &j| {
             let (a, b) = (&trials[i], &trials[j]);
             a.cause.order().cmp(&b.cause.order()).then(a.held.total_cmp(&b.held))

@@ -4,9 +4,11 @@
 
 use std::sync::Arc;
 
+use super::candidate::Candidate;
+use super::found::Slot;
 use super::problem::{Grain, Model, Part};
 use super::refit::{Refit, refit};
-use super::search::{Search, Slot};
+use super::search::Search;
 use super::sets::{AS_GOOD, headed_by};
 use super::sketch::{Drawing, NAME};
 use super::stage::{Trial, trial};
@@ -68,7 +70,11 @@ impl Search<'_, '_> {
         let drawing =
             Drawing { problem: self.problem, nominal: self.nominal, nuisance: &self.nuisance };
         let mut sketches = drawing.sketches(model, &y);
-        sketches.retain(|sketch| sketch.share > WORTH);
+        // beside a law of the same coordinate neither would have a size of its own
+        let is_free = |of: &Candidate| {
+            !model.added.iter().any(|a| a.cause.into == of.into && a.cause.of == of.of)
+        };
+        sketches.retain(|sketch| sketch.share > WORTH && is_free(&sketch.cause));
         sketches.truncate(REFITTED);
         let starts: Vec<Model> = sketches
             .iter()

@@ -2,8 +2,9 @@
 //! for dry friction and drag.
 
 use super::candidate::Wire;
+use super::found::Slot;
 use super::problem::Model;
-use super::search::{Search, Slot};
+use super::search::Search;
 use super::sets::headed_by;
 use super::stage::{Trial, stage};
 

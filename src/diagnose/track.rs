@@ -7,13 +7,14 @@ use super::candidate::Wire;
 use super::dependence::{DEPENDS, dependence};
 use super::finding::{Moved, Track};
 use super::finished::{Finished, moved_together};
+use super::found::{Found, Slot};
 use super::library::Allowed;
 use super::nominal::Nominal;
 use super::nuisance::Nuisance;
 use super::precision::covariance;
 use super::problem::{Grain, Model, Part, Problem};
 use super::refit::{Fitted, MANY, Refit, refit};
-use super::search::{Found, Search, Slot};
+use super::search::Search;
 use crate::watch::Watch;
 
 /// Score at which moved parameters that leave nothing beat a single cause.
@@ -63,14 +64,26 @@ impl<'a, 'b> Tracks<'a, 'b> {
             let is_enough = |of: &Finished| of.dependence < DEPENDS && !of.found.full;
             // a few that moved beside a cause may stand in for a second one
             let few = |of: &Finished| !of.found_nothing() && of.moved.len() <= FEW;
-            let alone = |of: &Finished| is_enough(of) && !few(of) && self.colour(&of.y) < COLOURED;
+            let is_told = |of: &Finished| of.found_nothing() || !of.found.named().is_empty();
+            let alone = |of: &Finished| {
+                is_enough(of) && is_told(of) && !few(of) && self.colour(&of.y) < COLOURED
+            };
             let enough = self.watch.stopped() || on_free.as_ref().is_some_and(alone);
+            let begun = on_free.as_ref().map_or(vec![], |free| free.found.named());
+            let settled = self.watch.stopped() || begun.is_empty();
             if !enough || on_free.is_none() {
                 found = self.search(held.clone(), start, (0.6, 0.95), None)?;
+            } else if !settled {
+                // beside what is named, a few laws may leave as little as parameters that moved
+                let mut search = self.begin(held.clone(), self.most.min(begun.len() + FEW));
+                (search.share, search.begun) = ((0.6, 0.95), begun);
+                let first = (found.first, found.dependence);
+                found = search.run(start.clone())?;
+                (found.first, found.dependence) = first;
             }
             let trusted = self.finish(Track::ParametersTrusted, found, held)?;
             return Some(match on_free {
-                Some(free) if enough => (free, Some(trusted)),
+                Some(free) if enough && settled => (free, Some(trusted)),
                 Some(free) => self.chosen(trusted, free),
                 None => (trusted, None),
             });
@@ -89,7 +102,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
         // make up for a cause may hide it while they are held
         let hidden = trusted.found_nothing() && self.colour(&trusted.y) > COLOURED;
         // a curve is the last resort: whether moved parameters make it superfluous is asked first
-        let drawn = trusted.fitted.model.added.iter().any(|added| added.cause.is_drawn());
+        let drawn = trusted.is_drawn();
         let explained = settled && trusted.dependence < DEPENDS && !hidden || left < SOLVED;
         let clean = explained && !drawn;
         let on_free = if clean {
@@ -104,7 +117,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
         let simpler = (clean && trusted.structural() > 1).then_some(moved).flatten();
         let simpler = simpler.and_then(|(moved, _)| self.one_cause(&free, &moved));
         let on_free = match (simpler, on_free) {
-            (Some(one), Some(many)) if one.structural() < many.structural() => {
+            (Some(one), Some(many)) => {
                 Some(if self.evidence(&many, &one) > 0.0 { one } else { many })
             }
             (_, on_free) => on_free,

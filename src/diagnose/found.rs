@@ -1,0 +1,61 @@
+//! What a search begins with and what it ends with.
+
+use std::sync::Arc;
+
+use super::candidate::Candidate;
+use super::problem::{Added, Model};
+use super::screen::Screen;
+
+/// One named cause with everything that cannot be told from it.
+#[derive(Debug, Clone)]
+pub(crate) struct Slot {
+    /// Members of the set with their share of what the best removes, the headline first.
+    pub set: Vec<(Arc<Candidate>, f64)>,
+    /// Others that were refitted, with the share of the best's gain that they reach.
+    pub others: Vec<(Arc<Candidate>, f64)>,
+    /// Score of the model with it against that without it, on the part that chooses; 0 where the
+    /// two were not compared.
+    pub score: f64,
+}
+
+impl Slot {
+    /// A cause that was compared with no other.
+    pub fn of(cause: &Arc<Candidate>) -> Self {
+        Self { set: vec![(cause.clone(), 1.0)], others: vec![], score: 0.0 }
+    }
+}
+
+/// What a search ended with.
+pub(crate) struct Found {
+    pub model: Model,
+    pub slots: Vec<Slot>,
+    /// The first screen: the ranking for the report.
+    pub first: Option<Screen>,
+    /// The last screen: what would still have been seen.
+    pub last: Option<Screen>,
+    /// Score of the dependence of the first residual on the inputs.
+    pub dependence: f64,
+    /// Samples flagged as spikes, per output.
+    pub spikes: Vec<Vec<usize>>,
+    /// Whether the most causes allowed were reached.
+    pub full: bool,
+    /// Whether it was given up, because its rival was better.
+    pub given_up: bool,
+}
+
+/// A cause that a search begins with.
+pub(crate) struct Begun {
+    pub added: Added,
+    pub slot: Slot,
+}
+
+impl Found {
+    /// The causes that were named, known limits aside; none where one of them has no name.
+    pub fn named(&self) -> Vec<Begun> {
+        if self.model.added.iter().any(|added| added.cause.is_drawn()) {
+            return vec![];
+        }
+        let causes = self.model.added.iter().zip(&self.slots).skip(self.model.known());
+        causes.map(|(added, slot)| Begun { added: added.clone(), slot: slot.clone() }).collect()
+    }
+}
