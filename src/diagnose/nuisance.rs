@@ -1,6 +1,7 @@
 //! What may explain a residual without being a finding: initial states, and parameters
 //! where they are free.
 
+use super::candidate::{Candidate, Wire};
 use super::nominal::Nominal;
 use super::problem::{Grain, Job, Model, Part, Problem, Simulated, Span};
 use super::together::Together;
@@ -63,6 +64,11 @@ impl Nuisance {
             .map(|(i, p)| (i, p.value))
             .collect();
         self
+    }
+
+    /// Whether a cause is a parameter that moves anyway.
+    pub fn frees(&self, cause: &Candidate) -> bool {
+        matches!(cause.wire, Wire::Parameter(p) if self.free.iter().any(|&(q, _)| q == p))
     }
 
     /// Keys that move in a model: nuisance first, then the knobs of its causes.

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::nuisance::{Key, Nuisance, set};
-use super::problem::{Grain, Model, Part, Problem, Span};
+use super::problem::{Grain, Job, Model, Part, Problem, Span};
 use super::restart::restarted;
 use super::together::Together;
 use crate::optimise::{Levenberg, Settings};
@@ -148,16 +148,11 @@ fn once(
                 // what is asked for after the start is worked out beside it
                 points.extend(Together::new(keys).points(&run.point, &next));
             }
-            counts.push(points.len());
-            for point in points {
-                let Some(job) = problem.job(&moved(model, keys, &point), how.grain) else {
-                    // a model that cannot be built has no residuals anywhere
-                    counts.pop();
-                    counts.push(0);
-                    break;
-                };
-                jobs.push(job);
-            }
+            let job = |point: &Vec<f64>| problem.job(&moved(model, keys, point), how.grain);
+            // a model that cannot be built has no residuals anywhere
+            let own: Option<Vec<Job>> = points.iter().map(job).collect();
+            counts.push(own.as_ref().map_or(0, Vec::len));
+            jobs.extend(own.into_iter().flatten());
         }
         if jobs.is_empty() {
             break;

@@ -48,14 +48,29 @@ pub(crate) struct Screen {
     pub columns: usize,
     /// What the nuisance makes up for to first order, orthonormal.
     pub basis: Vec<Vec<f64>>,
+    /// The residual, less that.
+    pub left: Vec<f64>,
+    /// Every grid point to first order, less that too.
+    pub tangents: Vec<Tangent>,
 }
 
-/// Screens all candidates on top of a model.
+/// One grid point of a candidate to first order.
+pub(crate) struct Tangent {
+    pub cause: Arc<Candidate>,
+    pub start: usize,
+    /// Sign of the first coefficient; 0 where both are allowed.
+    pub sign: f64,
+    /// Effect of one unit of each coefficient.
+    pub columns: Vec<Vec<f64>>,
+}
+
+/// Screens all candidates on top of a model; whether the tangents are `kept`.
 pub(crate) fn screen(
     problem: &Problem<'_>,
     nuisance: &Nuisance,
     model: &Model,
     candidates: &[Arc<Candidate>],
+    kept: bool,
 ) -> Option<Screen> {
     let job = problem.job(model, Grain::Coarse)?;
     let y0 = problem.run(&[job], Span::Fit).swap_remove(0)?;
@@ -105,10 +120,15 @@ pub(crate) fn screen(
     for (probe, column) in hits {
         of_start.entry((probe.candidate, probe.start)).or_default().push((column, probe.size));
     }
+    let mut tangents = vec![];
     for ((c, start), columns) in of_start {
         let cause = &candidates[c];
         if columns.len() < cause.linear.len() {
             continue;
+        }
+        if kept && let Some(columns) = at.apart(&columns) {
+            let sign = if cause.blended() { 1.0 } else { cause.sign };
+            tangents.push(Tangent { cause: cause.clone(), start, sign, columns });
         }
         let Some(scored) = at.score(cause, start, columns, None) else { continue };
         per_start[c].push((scored.explained, start, scored.probe));
@@ -154,10 +174,12 @@ pub(crate) fn screen(
             steer(problem, &mut sharing, candidates, &mut probes, &rough, (0.3, target), false)
         {
             let cause = &candidates[probe.candidate];
-            let sign = probe.size.signum();
-            if let Some(scored) =
-                at.score(cause, probe.start, vec![(column, probe.size)], Some(sign))
-            {
+            let (sign, columns) = (probe.size.signum(), vec![(column, probe.size)]);
+            if kept && let Some(columns) = at.apart(&columns) {
+                let (cause, start) = (cause.clone(), probe.start);
+                tangents.push(Tangent { cause, start, sign, columns });
+            }
+            if let Some(scored) = at.score(cause, probe.start, columns, Some(sign)) {
                 keep(&mut best[probe.candidate], scored);
             }
         }
@@ -170,6 +192,8 @@ pub(crate) fn screen(
         far: residual / spread.max(1e-300),
         columns,
         basis,
+        left,
+        tangents,
     })
 }
 
@@ -188,6 +212,19 @@ struct Looking<'a, 'b> {
 }
 
 impl Looking<'_, '_> {
+    /// Columns less what the nuisance makes up for; `None` where nothing is left of them.
+    fn apart(&self, columns: &[(Vec<f64>, f64)]) -> Option<Vec<Vec<f64>>> {
+        let before: f64 = columns.iter().map(|(c, _)| dot(c, c)).sum();
+        let own = |(column, _): &(Vec<f64>, f64)| {
+            let mut column = column.clone();
+            project(self.basis, &mut column);
+            column
+        };
+        let columns: Vec<Vec<f64>> = columns.iter().map(own).collect();
+        let after: f64 = columns.iter().map(|c| dot(c, c)).sum();
+        (after > 1e-6 * before && after.is_finite()).then_some(columns)
+    }
+
     /// Scores the columns of one grid start; `sign` is that of a secant probe, which only
     /// counts for estimates of its own sign.
     fn score(
@@ -200,18 +237,9 @@ impl Looking<'_, '_> {
         debug_assert_eq!(self.r0.len(), self.left.len());
         let probe = columns.first()?.1;
         let before: f64 = columns.iter().map(|(c, _)| dot(c, c)).sum();
-        let columns: Vec<Vec<f64>> = columns
-            .into_iter()
-            .map(|(mut column, _)| {
-                project(self.basis, &mut column);
-                column
-            })
-            .collect();
+        let columns = self.apart(&columns)?;
         let after: f64 = columns.iter().map(|c| dot(c, c)).sum();
         let kappa = (after / before).sqrt();
-        if !(after > 1e-6 * before) || !after.is_finite() {
-            return None;
-        }
         let (estimate, fitted) = if columns.len() == 1 {
             let c = dot(&columns[0], self.left) / after;
             (vec![c], columns[0].iter().map(|s| c * s).collect::<Vec<f64>>())
@@ -249,7 +277,7 @@ impl Looking<'_, '_> {
 }
 
 /// Least squares with a few columns.
-fn solve(columns: &[Vec<f64>], y: &[f64]) -> Option<Vec<f64>> {
+pub(super) fn solve(columns: &[Vec<f64>], y: &[f64]) -> Option<Vec<f64>> {
     let n = columns.len();
     let normal = nalgebra::DMatrix::from_fn(n, n, |i, j| dot(&columns[i], &columns[j]));
     let right = nalgebra::DVector::from_fn(n, |i, _| dot(&columns[i], y));

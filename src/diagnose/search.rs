@@ -23,6 +23,9 @@ const ACCEPT_INDEPENDENT: f64 = 7.0;
 /// Dependence on the inputs at which two causes are looked for where one alone is not enough.
 const DEPENDS: f64 = 4.0;
 
+/// A model, its causes and its outputs before causes were put on trial.
+type Sure = (Model, Vec<Slot>, Arc<Vec<Vec<f64>>>);
+
 /// A search under way.
 pub(crate) struct Search<'a, 'b> {
     pub problem: &'a mut Problem<'b>,
@@ -106,11 +109,19 @@ impl<'a, 'b> Search<'a, 'b> {
     }
 
     /// Goes on from a model: what is a spike, what steps cost, and each output's scale.
-    fn stand_on(&mut self, model: &Model) {
+    pub(super) fn stand_on(&mut self, model: &Model) {
         self.flag(model);
         self.problem.recorrect(model);
         if let Some(y) = self.present(model) {
             self.problem.rescale(&y);
+        }
+    }
+
+    /// Goes back to what was sure before causes were put on trial.
+    fn back(&mut self, model: &mut Model, slots: &mut Vec<Slot>, sure: Option<Sure>) {
+        if let Some((before, its_slots, _)) = sure {
+            (*model, *slots) = (before, its_slots);
+            self.stand_on(model);
         }
     }
 
@@ -137,7 +148,7 @@ impl<'a, 'b> Search<'a, 'b> {
         let mut only = None;
         let mut full = true;
         let mut given_up = false;
-        let mut doubted = None;
+        let mut doubted: Option<Sure> = None;
         for number in begun..self.most.max(1) {
             let (at, step) = (number as f64 / (self.most + 1) as f64, 1.0 / (self.most + 1) as f64);
             self.tell(
@@ -151,6 +162,10 @@ impl<'a, 'b> Search<'a, 'b> {
             let mut before = self.present(&model)?;
             let known = model.known();
             if number > 0 && self.is_noise(&before) {
+                if doubted.is_none() && self.rejoin(&mut model, &mut slots, false) {
+                    full = number + 1 < self.most;
+                    continue;
+                }
                 full = false;
                 break;
             }
@@ -209,16 +224,23 @@ impl<'a, 'b> Search<'a, 'b> {
             if number == 0 {
                 previous = trials.clone();
             }
-            let Some(best) = trials.first() else {
-                full = false;
+            let best = trials.first();
+            let accepted = best.is_some_and(|best| self.accepts_trial(&before, best));
+            let hidden = visible || number > 0;
+            let leads_on = |best: &Trial| self.may_lead_on(&before, best);
+            let doubtful =
+                !accepted && hidden && number + 1 < self.most && best.is_some_and(leads_on);
+            let (Some(best), true) = (best, accepted || doubtful) else {
+                self.back(&mut model, &mut slots, doubted.take());
+                let goes_on = hidden && !given_up && self.rejoin(&mut model, &mut slots, visible);
+                full = goes_on && number + 1 < self.most;
+                if goes_on {
+                    only = None;
+                    continue;
+                }
                 break;
             };
-            if !self.accepts_trial(&before, best) {
-                let hidden = visible || number > 0;
-                if !hidden || number + 1 == self.most || !self.may_lead_on(&before, best) {
-                    full = false;
-                    break;
-                }
+            if doubtful {
                 doubted.get_or_insert_with(|| (model.clone(), slots.clone(), before.clone()));
             }
             let held = self.problem.mean_square(&before, Part::Choose);
@@ -242,10 +264,8 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             self.stand_on(&model);
         }
-        if let Some((sure, its_slots, _)) = doubted {
-            (model, slots, full) = (sure, its_slots, false);
-            self.stand_on(&model);
-        }
+        full &= doubted.is_none();
+        self.back(&mut model, &mut slots, doubted);
         match only {
             // the first stage's trials are still those of the only cause
             Some((trials, held)) if slots.len() == 1 && model.added.len() == 1 => {

@@ -83,7 +83,11 @@ impl Search<'_, '_> {
     }
 
     /// Natural logarithm of how much more probable `b` is than `a`, models and their outputs.
-    fn gained(&self, (a, ya): (&Model, &[Vec<f64>]), (b, yb): (&Model, &[Vec<f64>])) -> f64 {
+    pub(super) fn gained(
+        &self,
+        (a, ya): (&Model, &[Vec<f64>]),
+        (b, yb): (&Model, &[Vec<f64>]),
+    ) -> f64 {
         self.problem.odds(ya, yb, self.is_white(yb)) + a.cost() - b.cost()
     }
 }

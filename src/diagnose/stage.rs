@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::candidate::{Candidate, Wire};
+use super::candidate::Candidate;
 use super::nuisance::Nuisance;
 use super::probes::with_candidate;
 use super::problem::{Grain, Model, Part, Problem, Simulated};
@@ -78,13 +78,9 @@ pub(crate) fn stage(
     most: usize,
 ) -> Option<Stage> {
     let taken = |cause: &Candidate| model.added.iter().any(|a| a.cause.same_cause(cause));
-    let free_parameter = |cause: &Candidate| match cause.wire {
-        Wire::Parameter(p) => nuisance.free.iter().any(|&(q, _)| q == p),
-        _ => false,
-    };
     let open: Vec<Arc<Candidate>> =
-        candidates.iter().filter(|c| !taken(c) && !free_parameter(c)).cloned().collect();
-    let mut screened = screen(problem, nuisance, model, &open)?;
+        candidates.iter().filter(|c| !taken(c) && !nuisance.frees(c)).cloned().collect();
+    let mut screened = screen(problem, nuisance, model, &open, false)?;
     let bar = gate(screened.columns);
     let passes_alone = |s: &Scored| {
         let own_bar = if is_hum(&s.cause) { bar + 1.5 } else { bar };
