@@ -28,15 +28,15 @@ impl Tracks<'_, '_> {
         let take_free = match better {
             b if b > WINS || whiter || strong => true,
             b if b < -WINS => false,
+            // names for what has none while parameters are held, though none of these went far
+            _ if trusted.is_drawn() && !free.found_nothing() && !free.is_drawn() => {
+                self.evidence(&trusted, &free) > DOUBTED
+            }
             // no more causes, but beside moved parameters, or fewer: what each story takes is
             // weighed against how much better it is
             _ if (1..=trusted.structural()).contains(&free.structural()) => {
                 let is_other = !free.moved.is_empty() || free.structural() < trusted.structural();
                 is_other && self.evidence(&trusted, &free) > DOUBTED
-            }
-            // names for what has none while parameters are held
-            _ if trusted.is_drawn() && !free.found_nothing() && !free.is_drawn() => {
-                self.evidence(&trusted, &free) > DOUBTED
             }
             _ => free.price() < trusted.price(),
         };

@@ -5,13 +5,13 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::candidate::Candidate;
-use super::problem::{Grain, Model};
+use super::candidate::{Candidate, Wire};
+use super::problem::{Added, Grain, Model, Part, Span};
 use super::refit::{Refit, refit};
 use super::screen::{Tangent, screen, solve};
 use super::search::Search;
 use super::stage::{Trial, trial};
-use crate::statistics::{add_to_basis, dot};
+use crate::statistics::{add_to_basis, dot, project};
 
 /// Grid points that are paired, those that explain most.
 const LEADING: usize = 300;
@@ -20,6 +20,8 @@ const LOOKED_AT: usize = 200;
 const REFITTED: usize = 10;
 /// Relative difference of what two pairs explain below which they are the same.
 const TWIN: f64 = 1e-6;
+/// How much weaker causes are made to see what they do.
+const LESS: f64 = 0.02;
 /// Share of a second cause that has to be its own.
 const OWN: f64 = 1e-3;
 
@@ -57,20 +59,30 @@ impl Spanned {
 }
 
 impl Search<'_, '_> {
-    /// The pairs that explain best what a model leaves, fitted beside it, the best first; the
+    /// The pairs that take best the place of some of a model's causes, fitted, the best first; the
     /// cause of each trial is the second one.
-    pub(super) fn joint(&self, model: &Model, candidates: &[Arc<Candidate>]) -> Vec<Trial> {
-        let present = |c: &Candidate| model.added.iter().any(|a| a.cause.same_cause(c));
+    ///
+    /// What is to be explained is what the model leaves and, to first order, what those causes
+    /// explain; everything is looked at about the model itself, which follows the data best.
+    pub(super) fn joint(
+        &self,
+        model: &Model,
+        out: &[usize],
+        candidates: &[Arc<Candidate>],
+    ) -> Vec<Trial> {
+        let rest = model.without_all(out);
+        let present = |c: &Candidate| rest.added.iter().any(|a| a.cause.same_cause(c));
         let is_open = |c: &&Arc<Candidate>| !present(c) && !self.nuisance.frees(c);
         let open: Vec<_> = candidates.iter().filter(is_open).cloned().collect();
-        let Some(screen) = screen(self.problem, &self.nuisance, model, &open, true) else {
-            return vec![];
-        };
-        let chosen = pairs(&screen.tangents, &screen.left);
+        let screened = screen(self.problem, &self.nuisance, &still(model, out), &open, true);
+        let Some((screen, own)) = screened.zip(self.share(model, out)) else { return vec![] };
+        let mut left: Vec<f64> = screen.left.iter().zip(&own).map(|(l, o)| l + o).collect();
+        project(&screen.basis, &mut left);
+        let chosen = pairs(&screen.tangents, &left);
         let added = |model: &Model, (cause, knobs): &(Arc<Candidate>, Vec<f64>)| {
             model.with(cause, knobs.clone())
         };
-        let models: Vec<Model> = chosen.iter().map(|[a, b]| added(&added(model, a), b)).collect();
+        let models: Vec<Model> = chosen.iter().map(|[a, b]| added(&added(&rest, a), b)).collect();
         let fitted = refit(self.problem, &self.nuisance, &models, Refit::search());
         let mut trials: Vec<Trial> = vec![];
         for ([_, (second, _)], fitted) in chosen.iter().zip(fitted) {
@@ -81,12 +93,49 @@ impl Search<'_, '_> {
         trials.sort_by(|a, b| a.held.total_cmp(&b.held));
         trials
     }
+
+    /// What some causes do to the outputs, to first order, over the part that is fitted.
+    fn share(&self, model: &Model, out: &[usize]) -> Option<Vec<f64>> {
+        let mut less = model.clone();
+        for &i in out {
+            for &k in &model.added[i].cause.linear {
+                less.added[i].knobs[k] *= 1.0 - LESS;
+            }
+        }
+        let (job, mut less) =
+            (self.problem.job(model, Grain::Coarse)?, self.problem.job(&less, Grain::Coarse)?);
+        // those without a size are blended in
+        let is_placed = |added: &&Added| !matches!(added.cause.wire, Wire::Parameter(_));
+        let placed = |added: &[Added]| added.iter().filter(is_placed).count();
+        let slots = less.plan.slots.len();
+        let own = slots - placed(&model.added);
+        let mut gains = vec![1.0; slots];
+        for &i in out.iter().filter(|&&i| model.added[i].cause.blended()) {
+            gains[own + placed(&model.added[..i])] = 1.0 - LESS;
+        }
+        less.lane.gains = gains;
+        let mut runs = self.problem.run(&[job, less], Span::Fit).into_iter();
+        let mut residual = || Some(self.problem.residual(&runs.next()??, Part::Fit));
+        let (with, without) = (residual()?, residual()?);
+        Some(without.iter().zip(&with).map(|(a, b)| (a - b) / LESS).collect())
+    }
+}
+
+/// A model some of whose causes stay what they are.
+fn still(model: &Model, these: &[usize]) -> Model {
+    let mut model = model.clone();
+    for &i in these {
+        let mut cause = (*model.added[i].cause).clone();
+        (cause.linear, cause.refine) = (vec![], vec![]);
+        model.added[i].cause = Arc::new(cause);
+    }
+    model
 }
 
 /// Two causes with the sizes that they have beside each other.
 type Pair = [(Arc<Candidate>, Vec<f64>); 2];
 
-/// The pairs of tangents that explain most of a residual.
+/// The pairs of tangents that explain most of a residual, as far as their numbers are paid for.
 fn pairs(tangents: &[Tangent], left: &[f64]) -> Vec<Pair> {
     let mut spanned: Vec<(&Tangent, Spanned)> =
         tangents.iter().map(|t| (t, Spanned::new(&t.columns, left))).collect();
@@ -100,7 +149,12 @@ fn pairs(tangents: &[Tangent], left: &[f64]) -> Vec<Pair> {
             }
         }
     }
-    ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+    // a sum of squares that is worth as much as a number, with what the best leaves as the noise
+    let most = ranked.iter().map(|r| r.0).fold(0.0, f64::max);
+    let unit = 2.0 * (dot(left, left) - most).max(0.0) / left.len().max(1) as f64;
+    let cost = |i: usize| spanned[i].0.cause.cost();
+    let worth = |&(explained, i, j): &(f64, usize, usize)| explained - unit * (cost(i) + cost(j));
+    ranked.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     let mut pairs: Vec<(f64, Pair)> = vec![];
     for (explained, i, j) in ranked.into_iter().take(LOOKED_AT) {
         let (a, b) = (spanned[i].0, spanned[j].0);
@@ -156,7 +210,7 @@ mod tests {
         let mut rest = left.clone();
         let mut basis = first.basis.clone();
         add_to_basis(&mut basis, mix(0.0, 1.0, 0.5));
-        crate::statistics::project(&basis, &mut rest);
+        project(&basis, &mut rest);
         let explained = dot(&left, &left) - dot(&rest, &rest);
         let together = first.together(&second).unwrap();
         assert!((together - explained).abs() < 1e-9 * explained);

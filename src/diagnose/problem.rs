@@ -70,6 +70,11 @@ impl Model {
         model.added.remove(index);
         model
     }
+
+    /// The same without some of its causes, ascending.
+    pub fn without_all(&self, these: &[usize]) -> Self {
+        these.iter().rev().fold(self.clone(), |model, &i| model.without(i))
+    }
 }
 
 /// One simulation that is wanted.

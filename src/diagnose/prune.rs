@@ -50,15 +50,16 @@ impl Search<'_, '_> {
     }
 
     /// Takes each cause out in turn and looks for a better one in its place, until nothing
-    /// changes; refreshes every set given the other causes.
-    pub(super) fn swap(&mut self, model: &mut Model, slots: &mut Vec<Slot>) {
+    /// changes; refreshes every set given the other causes, but at first those of the last `spare`,
+    /// which were just chosen.
+    pub(super) fn swap(&mut self, model: &mut Model, slots: &mut Vec<Slot>, spare: usize) {
         if model.added.len() < 2 {
             return;
         }
         for round in 0..5 {
             let mut changed = false;
             let count = model.added.len();
-            for i in 0..count - usize::from(round == 0) {
+            for i in 0..count - if round == 0 { spare.min(count) } else { 0 } {
                 if self.watch.stopped() {
                     return;
                 }

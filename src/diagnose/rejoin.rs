@@ -1,5 +1,6 @@
 //! Causes that are compromises: two others take the place of one, or of two.
 
+use super::candidate::Preference;
 use super::found::Slot;
 use super::problem::Model;
 use super::search::Search;
@@ -8,11 +9,16 @@ use super::stage::Trial;
 
 /// Places that are looked at, those of the causes of which the record says least.
 const PLACES: usize = 6;
+/// Numbers from which on a law that leaves noise may stand for two plainer ones.
+const RICH: usize = 3;
+/// Difference of two gains below which the plainer pair is taken.
+const TIE: f64 = 0.01;
 
 impl Search<'_, '_> {
     /// Puts two causes in the place of one, of two, or of none, where that is more probable by far.
-    /// Where nothing but noise is left, two in the place of two only. `visible`: the first residual
-    /// depends on the inputs, so that two may be looked for where there is none. Whether it did.
+    /// Where nothing but noise is left, one that stands alone has to be a rich one. `visible`: the
+    /// first residual depends on the inputs, so that two may be looked for where there is none.
+    /// Whether it did.
     pub(super) fn rejoin(
         &mut self,
         model: &mut Model,
@@ -22,26 +28,31 @@ impl Search<'_, '_> {
         let Some(now) = self.present(model) else { return false };
         let (known, count) = (model.known(), model.added.len());
         let mut places = self.places(model, slots, visible);
-        if self.is_noise(&now) {
-            places.retain(|place| place.len() == 2);
+        let in_noise = self.is_noise(&now);
+        if in_noise {
+            let is_rich = |i: usize| model.added[i].cause.unknowns() >= RICH;
+            places.retain(|place| place.first().is_some_and(|&i| count > known + 1 || is_rich(i)));
         }
         let mut best: Option<(f64, Vec<usize>, Trial)> = None;
         for out in places {
             if self.watch.stopped() {
                 return false;
             }
-            // as in a swap, the others stay what they are
-            let mut rest = model.clone();
-            for &i in out.iter().rev() {
-                rest = rest.without(i);
+            let mut candidates = self.candidates(&self.fitted(model.without_all(&out)));
+            if let (true, [i]) = (in_noise && count == known + 1, &out[..]) {
+                candidates.retain(|c| c.unknowns() < model.added[*i].cause.unknowns());
             }
-            let candidates = self.candidates(&self.fitted(rest.clone()));
-            for trial in self.joint(&rest, &candidates) {
+            for trial in self.joint(model, &out, &candidates) {
                 let gained = self.gained((model, &now), (&trial.model, &trial.y));
                 let is_better =
                     gained > RULED_OUT && count > known || self.accepts(&now, &trial.y, false);
-                let is_best = best.as_ref().is_none_or(|(most, ..)| gained > *most);
-                if is_better && is_best && self.score(&now, &trial.y) > 1.0 {
+                let is_best = best.as_ref().is_none_or(|(most, _, best)| {
+                    let plainer = order(&trial.model) < order(&best.model);
+                    gained > *most + TIE || gained > *most - TIE && plainer
+                });
+                // plainer ones need not be better over blocks, only not worse
+                let bar = if trial.model.cost() < model.cost() { -1.0 } else { 1.0 };
+                if is_better && is_best && self.score(&now, &trial.y) > bar {
                     best = Some((gained, out.clone(), trial));
                 }
             }
@@ -54,7 +65,7 @@ impl Search<'_, '_> {
         *model = trial.model;
         slots.extend(model.added[slots.len()..].iter().map(|added| Slot::of(&added.cause)));
         self.prune(model, slots, 0);
-        self.swap(model, slots);
+        self.swap(model, slots, 0);
         self.prune(model, slots, 0);
         // what is left when some of it turned out not to be needed
         let is_better = self.present(model).is_some_and(|y| {
@@ -86,4 +97,11 @@ impl Search<'_, '_> {
         places.truncate(PLACES);
         places
     }
+}
+
+/// How pairs that explain alike are ordered: the least comes first.
+fn order(model: &Model) -> Vec<(Preference, usize, u8, Preference)> {
+    let mut both: Vec<_> = model.added.iter().rev().take(2).map(|a| a.cause.order()).collect();
+    both.sort();
+    both
 }

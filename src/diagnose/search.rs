@@ -256,7 +256,7 @@ impl<'a, 'b> Search<'a, 'b> {
             }
             self.tell(at + 0.8 * step, "checking what was named");
             self.prune(&mut model, &mut slots, 1);
-            self.swap(&mut model, &mut slots);
+            self.swap(&mut model, &mut slots, 1);
             self.prune(&mut model, &mut slots, usize::from(doubted.is_some()));
             if doubted.as_ref().is_some_and(|(.., y)| self.has_led_on(y, &model)) {
                 self.prune(&mut model, &mut slots, 0);

@@ -135,7 +135,7 @@ impl Search<'_, '_> {
         let named = model.clone();
         self.settle(model, slots);
         if !model.same_causes(&named) {
-            self.swap(model, slots);
+            self.swap(model, slots, 1);
             self.settle(model, slots);
         }
     }

@@ -35,7 +35,7 @@ impl Search<'_, '_> {
             }
         }
         if changed {
-            self.swap(model, slots);
+            self.swap(model, slots, 1);
             self.settle(model, slots);
             if !self.is_gained(&before, model) {
                 (*model, *slots) = (before, its_slots);
