@@ -44,8 +44,8 @@ impl Search<'_, '_> {
             }
             for trial in self.joint(model, &out, &candidates) {
                 let gained = self.gained((model, &now), (&trial.model, &trial.y));
-                let is_better =
-                    gained > RULED_OUT && count > known || self.accepts(&now, &trial.y, false);
+                let is_better = gained > RULED_OUT && count > known
+                    || gained > 0.0 && self.accepts(&now, &trial.y, false);
                 let is_best = best.as_ref().is_none_or(|(most, _, best)| {
                     let plainer = order(&trial.model) < order(&best.model);
                     gained > *most + TIE || gained > *most - TIE && plainer
@@ -68,9 +68,8 @@ impl Search<'_, '_> {
         self.swap(model, slots, 0);
         self.prune(model, slots, 0);
         // what is left when some of it turned out not to be needed
-        let is_better = self.present(model).is_some_and(|y| {
-            self.gained((&before, &now), (model, &y)) > 0.0 || self.accepts(&now, &y, false)
-        });
+        let after = self.present(model);
+        let is_better = after.is_some_and(|y| self.gained((&before, &now), (model, &y)) > 0.0);
         if is_better {
             self.stand_on(model);
         } else {
