@@ -142,6 +142,16 @@ impl Candidate {
         (self.preference, self.unknowns(), self.card.rank, self.place)
     }
 
+    /// Knobs with these coefficients, as far as their bounds let them be.
+    pub fn sized(&self, start: &[f64], coefficients: &[f64]) -> Vec<f64> {
+        let mut knobs = start.to_vec();
+        for (&i, &value) in self.linear.iter().zip(coefficients) {
+            let (min, max) = self.bounds(i);
+            knobs[i] = value.clamp(min, max.max(min));
+        }
+        knobs
+    }
+
     /// Knobs within their ranges, the sign kept, and friction no steeper than `step` (s)
     /// lets the integrator follow.
     pub fn clipped(&self, knobs: &[f64], step: f64) -> Vec<f64> {

@@ -84,11 +84,13 @@ impl Search<'_, '_> {
         };
         let models: Vec<Model> = chosen.iter().map(|[a, b]| added(&added(&rest, a), b)).collect();
         let fitted = refit(self.problem, &self.nuisance, &models, Refit::search());
+        let models: Vec<&Model> = fitted.iter().flatten().map(|fitted| &fitted.model).collect();
+        let mut outputs = self.problem.simulate_all(&models, Grain::Coarse).into_iter();
         let mut trials: Vec<Trial> = vec![];
-        for ([_, (second, _)], fitted) in chosen.iter().zip(fitted) {
-            let Some(fitted) = fitted else { continue };
-            let y = self.problem.simulate(&fitted.model, Grain::Coarse);
-            trials.extend(trial(self.problem, second, fitted.model, y, false));
+        for ([_, (second, _)], fitted) in chosen.iter().zip(&fitted) {
+            let Some(model) = fitted.as_ref().map(|fitted| fitted.model.clone()) else { continue };
+            let y = outputs.next().flatten();
+            trials.extend(trial(self.problem, second, model, y, false));
         }
         trials.sort_by(|a, b| a.held.total_cmp(&b.held));
         trials
@@ -180,12 +182,8 @@ fn sized(a: &Tangent, b: &Tangent, left: &[f64]) -> Option<Pair> {
     let (of_a, of_b) = sizes.split_at(a.columns.len());
     let one = |tangent: &Tangent, sizes: &[f64]| {
         let cause = &tangent.cause;
-        let mut knobs = cause.starts[tangent.start].clone();
-        for (&i, &size) in cause.linear.iter().zip(sizes) {
-            let (min, max) = cause.bounds(i);
-            knobs[i] = size.clamp(min, max.max(min));
-        }
-        (tangent.sign * sizes[0] >= 0.0).then(|| (cause.clone(), knobs))
+        let knobs = || cause.sized(&cause.starts[tangent.start], sizes);
+        (tangent.sign * sizes[0] >= 0.0).then(|| (cause.clone(), knobs()))
     };
     Some([one(a, of_a)?, one(b, of_b)?])
 }

@@ -5,12 +5,11 @@ use super::found::Slot;
 use super::problem::Model;
 use super::search::Search;
 use super::sets::RULED_OUT;
+use super::split::MANY;
 use super::stage::Trial;
 
 /// Places that are looked at, those of the causes of which the record says least.
 const PLACES: usize = 6;
-/// Numbers from which on a law that leaves noise may stand for two plainer ones.
-const RICH: usize = 3;
 /// Difference of two gains below which the plainer pair is taken.
 const TIE: f64 = 0.01;
 
@@ -30,7 +29,7 @@ impl Search<'_, '_> {
         let mut places = self.places(model, slots, visible);
         let in_noise = self.is_noise(&now);
         if in_noise {
-            let is_rich = |i: usize| model.added[i].cause.unknowns() >= RICH;
+            let is_rich = |i: usize| model.added[i].cause.unknowns() >= MANY;
             places.retain(|place| place.first().is_some_and(|&i| count > known + 1 || is_rich(i)));
         }
         let mut best: Option<(f64, Vec<usize>, Trial)> = None;

@@ -114,21 +114,13 @@ fn ladder(cause: &Candidate, probe: f64, rungs: i32) -> Vec<f64> {
 pub(super) fn starting_points(scored: &Scored, scanned: Option<f64>) -> Vec<Vec<f64>> {
     let cause = &scored.cause;
     let mut points = vec![];
-    let with = |start: &[f64], values: &[f64]| {
-        let mut knobs = start.to_vec();
-        for (&i, &value) in cause.linear.iter().zip(values) {
-            let (min, max) = cause.bounds(i);
-            knobs[i] = value.clamp(min, max.max(min));
-        }
-        knobs
-    };
     if cause.blended() || cause.thresholds && cause.linear.len() == 1 {
         for knobs in thresholds(cause) {
             if cause.blended() {
                 points.push(knobs);
             } else {
                 for factor in [1.0, 0.4] {
-                    points.push(with(&knobs, &[factor * scored.estimate[0]]));
+                    points.push(cause.sized(&knobs, &[factor * scored.estimate[0]]));
                 }
             }
         }
@@ -137,15 +129,15 @@ pub(super) fn starting_points(scored: &Scored, scanned: Option<f64>) -> Vec<Vec<
         let start = &cause.starts[scored.start];
         for factor in [1.0, 0.4] {
             let values: Vec<f64> = scored.estimate.iter().map(|v| factor * v).collect();
-            points.push(with(start, &values));
+            points.push(cause.sized(start, &values));
         }
         if let Some(size) = scanned {
-            points.push(with(start, &[size]));
+            points.push(cause.sized(start, &[size]));
         }
         if cause.linear.len() == 1 && !cause.thresholds {
             for start in cause.starts.iter().take(7) {
                 for size in ladder(cause, scored.probe, 5) {
-                    points.push(with(start, &[size]));
+                    points.push(cause.sized(start, &[size]));
                 }
             }
         }

@@ -126,11 +126,13 @@ pub(crate) fn screen(
         if columns.len() < cause.linear.len() {
             continue;
         }
-        if kept && let Some(columns) = at.apart(&columns) {
+        let Some(own) = at.own(&columns) else { continue };
+        let scored = at.score(cause, start, &own, None);
+        if kept {
             let sign = if cause.blended() { 1.0 } else { cause.sign };
-            tangents.push(Tangent { cause: cause.clone(), start, sign, columns });
+            tangents.push(Tangent { cause: cause.clone(), start, sign, columns: own.columns });
         }
-        let Some(scored) = at.score(cause, start, columns, None) else { continue };
+        let Some(scored) = scored else { continue };
         per_start[c].push((scored.explained, start, scored.probe));
         keep(&mut best[c], scored);
     }
@@ -174,13 +176,13 @@ pub(crate) fn screen(
             steer(problem, &mut sharing, candidates, &mut probes, &rough, (0.3, target), false)
         {
             let cause = &candidates[probe.candidate];
-            let (sign, columns) = (probe.size.signum(), vec![(column, probe.size)]);
-            if kept && let Some(columns) = at.apart(&columns) {
-                let (cause, start) = (cause.clone(), probe.start);
-                tangents.push(Tangent { cause, start, sign, columns });
-            }
-            if let Some(scored) = at.score(cause, probe.start, columns, Some(sign)) {
+            let (sign, start) = (probe.size.signum(), probe.start);
+            let Some(own) = at.own(&[(column, probe.size)]) else { continue };
+            if let Some(scored) = at.score(cause, start, &own, Some(sign)) {
                 keep(&mut best[probe.candidate], scored);
+            }
+            if kept {
+                tangents.push(Tangent { cause: cause.clone(), start, sign, columns: own.columns });
             }
         }
     }
@@ -211,9 +213,19 @@ struct Looking<'a, 'b> {
     left: &'a [f64],
 }
 
+/// The columns of one grid start, less what the nuisance makes up for.
+struct Own {
+    columns: Vec<Vec<f64>>,
+    /// Size of the first column's probe.
+    probe: f64,
+    /// Share of them that is left.
+    kappa: f64,
+}
+
 impl Looking<'_, '_> {
-    /// Columns less what the nuisance makes up for; `None` where nothing is left of them.
-    fn apart(&self, columns: &[(Vec<f64>, f64)]) -> Option<Vec<Vec<f64>>> {
+    /// What is a start's own of its columns, each with its probe's size; `None` where nothing is.
+    fn own(&self, columns: &[(Vec<f64>, f64)]) -> Option<Own> {
+        let probe = columns.first()?.1;
         let before: f64 = columns.iter().map(|(c, _)| dot(c, c)).sum();
         let own = |(column, _): &(Vec<f64>, f64)| {
             let mut column = column.clone();
@@ -222,7 +234,8 @@ impl Looking<'_, '_> {
         };
         let columns: Vec<Vec<f64>> = columns.iter().map(own).collect();
         let after: f64 = columns.iter().map(|c| dot(c, c)).sum();
-        (after > 1e-6 * before && after.is_finite()).then_some(columns)
+        let is_there = after > 1e-6 * before && after.is_finite();
+        is_there.then(|| Own { columns, probe, kappa: (after / before).sqrt() })
     }
 
     /// Scores the columns of one grid start; `sign` is that of a secant probe, which only
@@ -231,27 +244,23 @@ impl Looking<'_, '_> {
         &self,
         cause: &Arc<Candidate>,
         start: usize,
-        columns: Vec<(Vec<f64>, f64)>,
+        own: &Own,
         sign: Option<f64>,
     ) -> Option<Scored> {
         debug_assert_eq!(self.r0.len(), self.left.len());
-        let probe = columns.first()?.1;
-        let before: f64 = columns.iter().map(|(c, _)| dot(c, c)).sum();
-        let columns = self.apart(&columns)?;
-        let after: f64 = columns.iter().map(|c| dot(c, c)).sum();
-        let kappa = (after / before).sqrt();
+        let Own { columns, probe, kappa } = own;
         let (estimate, fitted) = if columns.len() == 1 {
-            let c = dot(&columns[0], self.left) / after;
+            let c = dot(&columns[0], self.left) / dot(&columns[0], &columns[0]);
             (vec![c], columns[0].iter().map(|s| c * s).collect::<Vec<f64>>())
         } else {
             let mut basis = vec![];
-            for column in &columns {
+            for column in columns {
                 add_to_basis(&mut basis, column.clone());
             }
             let mut rest = self.left.to_vec();
             project(&basis, &mut rest);
             let fitted: Vec<f64> = self.left.iter().zip(&rest).map(|(a, b)| a - b).collect();
-            (solve(&columns, self.left)?, fitted)
+            (solve(columns, self.left)?, fitted)
         };
         let first = estimate[0];
         if cause.sign * first < 0.0 || cause.blended() && first < 0.0 {
@@ -269,9 +278,9 @@ impl Looking<'_, '_> {
             estimate,
             start,
             score: wald(&ff, &fr),
-            kappa,
+            kappa: *kappa,
             unit_effect: dot(&columns[0], &columns[0]).sqrt(),
-            probe,
+            probe: *probe,
         })
     }
 }

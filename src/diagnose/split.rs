@@ -8,8 +8,8 @@ use super::search::Search;
 use super::sets::headed_by;
 use super::stage::{Trial, stage};
 
-/// Numbers from which on a law may stand for two.
-const MANY: usize = 3;
+/// Numbers from which on a law may stand for two plainer ones.
+pub(super) const MANY: usize = 3;
 /// First laws that are gone on from, and second ones that are refitted.
 const FIRST: usize = 4;
 const SECOND: usize = 4;
