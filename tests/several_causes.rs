@@ -135,3 +135,17 @@ fn a_curve_that_only_makes_up_for_parameters_gives_way_to_a_law_with_a_name() {
     // none of the parameters went far, but with them free a law of the library is enough
     all_named(&marks("curve", &parameters_off(), 45, "191"), 1);
 }
+
+#[test]
+fn a_learned_law_that_was_drawn_too_soon_gives_way_to_causes_with_names() {
+    // none of the three alone is worth naming, and what is left is not seen to depend on the input
+    all_named(&marks("named", &of_all(4), 81, "191"), 3);
+}
+
+#[test]
+fn numbers_beside_a_wrong_parameter_allow_for_others_that_are_wrong_too() {
+    // all parameters of the motor are off; one is named and makes up for the others
+    let marks = marks("errors", &parameters_off(), 17, "191");
+    all_named(&marks, 1);
+    assert_eq!(marks["covered"], serde_json::json!([true]), "{marks:#}");
+}

@@ -8,7 +8,7 @@ use super::candidate::{NUMBER, Wire};
 use super::finding::{Moved, Track};
 use super::found::Found;
 use super::nuisance::{Key, Nuisance};
-use super::precision::standard_error;
+use super::precision::Precision;
 use super::refit::Fitted;
 use crate::model::Signals;
 
@@ -22,7 +22,7 @@ pub(crate) struct Finished {
     /// The final fit on all data, with fine steps.
     pub fitted: Fitted,
     pub nuisance: Nuisance,
-    pub covariance: Option<DMatrix<f64>>,
+    pub precision: Option<Precision>,
     pub moved: Vec<Moved>,
     /// Whether parameters moved along a ridge, where none of them has to.
     pub moved_together: bool,
@@ -37,25 +37,19 @@ pub(crate) struct Finished {
 pub(super) fn moved_together(
     nuisance: &Nuisance,
     fitted: &Fitted,
-    covariance: Option<&DMatrix<f64>>,
+    precision: Option<&Precision>,
 ) -> bool {
-    let places: Vec<(usize, f64)> = nuisance
-        .free
-        .iter()
-        .filter_map(|&(p, from)| {
-            let at = fitted.keys.iter().position(|key| *key == Key::Theta(p))?;
-            Some((at, fitted.model.theta[p] - from))
-        })
-        .collect();
-    let (Some(all), false) = (covariance, places.is_empty()) else { return false };
-    let own = DMatrix::from_fn(places.len(), places.len(), |i, j| all[(places[i].0, places[j].0)]);
-    let off = DVector::from_iterator(places.len(), places.iter().map(|p| p.1));
+    let n = nuisance.free.len();
+    let keys: Vec<Key> = nuisance.free.iter().map(|&(p, _)| Key::Theta(p)).collect();
+    let own = precision.and_then(|precision| precision.between(&keys));
+    let (Some(own), false) = (own, keys.is_empty()) else { return false };
+    let off = nuisance.free.iter().map(|&(p, from)| fitted.model.theta[p] - from);
+    let off = DVector::from_iterator(n, off);
     // in units of each parameter's error, so that the decomposition is well scaled
     let errors = own.diagonal().map(f64::sqrt);
-    let scaled =
-        DMatrix::from_fn(places.len(), places.len(), |i, j| own[(i, j)] / (errors[i] * errors[j]));
+    let scaled = DMatrix::from_fn(n, n, |i, j| own[(i, j)] / (errors[i] * errors[j]));
     let off = off.component_div(&errors);
-    scaled.cholesky().is_some_and(|c| off.dot(&c.solve(&off)) > MOVED.powi(2) * places.len() as f64)
+    scaled.cholesky().is_some_and(|c| off.dot(&c.solve(&off)) > MOVED.powi(2) * n as f64)
 }
 
 impl Moved {
@@ -86,13 +80,24 @@ impl Finished {
         self.fitted.model.added.iter().any(|added| added.cause.is_drawn())
     }
 
+    /// Standard error of one key.
+    pub(super) fn error(&self, key: Key) -> Option<f64> {
+        self.precision.as_ref()?.error(key)
+    }
+
+    /// Whether its errors allow for parameters to be wrong that it holds.
+    pub(super) fn is_doubting(&self) -> bool {
+        let held = |key: &Key| !self.fitted.keys.contains(key);
+        self.precision.as_ref().is_some_and(|precision| precision.keys().iter().any(held))
+    }
+
     /// Where the free parameters went.
     pub(super) fn went(&self, signals: &Signals) -> Vec<Moved> {
         let one = |&(p, from): &(usize, f64)| Moved {
             name: signals.parameters[p].name.clone(),
             from,
             to: self.fitted.model.theta[p],
-            std_error: standard_error(&self.fitted, self.covariance.as_ref(), Key::Theta(p)),
+            std_error: self.error(Key::Theta(p)),
         };
         self.nuisance.free.iter().map(one).collect()
     }

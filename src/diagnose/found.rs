@@ -55,7 +55,12 @@ impl Found {
         if self.model.added.iter().any(|added| added.cause.is_drawn()) {
             return vec![];
         }
-        let causes = self.model.added.iter().zip(&self.slots).skip(self.model.known());
-        causes.map(|(added, slot)| Begun { added: added.clone(), slot: slot.clone() }).collect()
+        named(&self.model, &self.slots)
     }
+}
+
+/// The causes of a model, known limits aside.
+pub(super) fn named(model: &Model, slots: &[Slot]) -> Vec<Begun> {
+    let causes = model.added.iter().zip(slots).skip(model.known());
+    causes.map(|(added, slot)| Begun { added: added.clone(), slot: slot.clone() }).collect()
 }

@@ -20,7 +20,7 @@ pub(crate) enum Key {
 }
 
 /// Priors of re-estimated parameters: this share of their value.
-const PRIOR: f64 = 0.15;
+pub(super) const PRIOR: f64 = 0.15;
 /// Segments whose initial states are estimated at most.
 pub(super) const SEGMENTS: usize = 120;
 

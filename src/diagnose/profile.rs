@@ -8,7 +8,6 @@ use nalgebra::DMatrix;
 use super::candidate::Candidate;
 use super::finished::Finished;
 use super::nuisance::{Key, Nuisance, get, set};
-use super::precision::standard_error;
 use super::problem::{Grain, Model, Problem};
 use super::refit::{Fitted, Refit, refit};
 use crate::optimise::Settings;
@@ -46,7 +45,7 @@ struct Side {
 pub(super) fn errors(problem: &Problem<'_>, chosen: &Finished, index: usize) -> Vec<Option<f64>> {
     let (fitted, model) = (&chosen.fitted, &chosen.fitted.model);
     let cause = &model.added[index].cause;
-    let error = |i: usize| standard_error(fitted, chosen.covariance.as_ref(), Key::Knob(index, i));
+    let error = |i: usize| chosen.error(Key::Knob(index, i));
     let mut errors: Vec<Option<f64>> = (0..cause.card.knobs.len()).map(error).collect();
     if !is_badly_known(cause, &model.added[index].knobs, &errors) {
         return errors;

@@ -1,7 +1,7 @@
 //! Causes that are compromises: two others take the place of one, or of two.
 
 use super::candidate::Preference;
-use super::found::Slot;
+use super::found::{Begun, Slot, named};
 use super::problem::Model;
 use super::search::Search;
 use super::sets::RULED_OUT;
@@ -75,6 +75,27 @@ impl Search<'_, '_> {
             (*model, *slots) = (before, its_slots);
         }
         is_better
+    }
+
+    /// Two causes that have names and are more probable than a curve or a learned law that was
+    /// `drawn` where `bare` names nothing, as one cause at a time is worth nothing there; not where
+    /// the search has `begun` with causes.
+    pub(super) fn named_instead(
+        &mut self,
+        drawn: &Model,
+        (mut bare, mut slots): (Model, Vec<Slot>),
+        begun: usize,
+    ) -> Option<Vec<Begun>> {
+        let is_drawn = drawn.added.iter().any(|added| added.cause.is_drawn());
+        let open = begun == 0 && is_drawn && bare.added.len() == bare.known();
+        if !open || !self.rejoin(&mut bare, &mut slots, true) {
+            return None;
+        }
+        let is_better = self.is_gained(drawn, &bare);
+        if !is_better {
+            self.stand_on(drawn);
+        }
+        is_better.then(|| named(&bare, &slots))
     }
 
     /// Every two causes; where there may be more, every one and the place beside them all.

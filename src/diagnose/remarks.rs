@@ -61,6 +61,12 @@ impl Teller<'_, '_> {
         if chosen.found.full {
             remarks.push("The search stopped at the largest number of causes allowed.".into());
         }
+        if chosen.is_doubting() {
+            remarks.push(format!(
+                "A parameter is named as wrong, so the standard errors allow for the others to be wrong too (prior: {}). Hold with --fix those that you are sure of.",
+                super::words::percent(super::nuisance::PRIOR)
+            ));
+        }
         let bound = |effect: &str| matches!(effect, "coulomb_friction" | "stribeck_friction");
         for cause in causes.iter().filter(|c| bound(&c.effect)) {
             let width = cause.parameters.iter().find(|v| v.name == "width");

@@ -130,13 +130,13 @@ impl<'a, 'b> Search<'a, 'b> {
         self.tell(0.0, "simulating the baseline");
         self.flag(&start);
         let mut slots: Vec<Slot> = vec![];
-        let mut start = self.limited(start, &mut slots);
+        let mut from = self.limited(start.clone(), &mut slots);
         let begun = self.begun.len();
         for Begun { added, slot } in std::mem::take(&mut self.begun) {
-            start.added.push(added);
+            from.added.push(added);
             slots.push(slot);
         }
-        let mut model = self.fitted(start);
+        let mut model = self.fitted(from);
         self.stand_on(&model);
         let y0 = self.present(&model)?;
         let dependence = dependence(self.problem, self.nominal, &y0);
@@ -283,8 +283,13 @@ impl<'a, 'b> Search<'a, 'b> {
         if !given_up {
             self.split(&mut model, &mut slots);
             if !self.is_told_better(&model) {
+                let bare = (model.clone(), slots.clone());
                 self.shapeless(&mut model, &mut slots);
                 self.learned(&mut model, &mut slots);
+                if let Some(named) = self.named_instead(&model, bare, begun) {
+                    self.begun = named;
+                    return Some(Found { first, dependence, ..self.run(start)? });
+                }
             }
         }
         self.tell(1.0, "done");

@@ -77,7 +77,7 @@ impl Search<'_, '_> {
     }
 
     /// Whether model `b` is more probable than `a`.
-    fn is_gained(&self, a: &Model, b: &Model) -> bool {
+    pub(super) fn is_gained(&self, a: &Model, b: &Model) -> bool {
         let both = self.present(a).zip(self.present(b));
         both.is_some_and(|(ya, yb)| self.gained((a, &ya), (b, &yb)) > 0.0)
     }

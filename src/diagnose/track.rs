@@ -11,7 +11,7 @@ use super::found::{Found, Slot};
 use super::library::Allowed;
 use super::nominal::Nominal;
 use super::nuisance::Nuisance;
-use super::precision::covariance;
+use super::precision::Precision;
 use super::problem::{Grain, Model, Part, Problem};
 use super::refit::{Fitted, MANY, Refit, refit};
 use super::search::Search;
@@ -43,7 +43,8 @@ impl<'a, 'b> Tracks<'a, 'b> {
     /// Searches both tracks; the chosen one comes first.
     pub fn run(mut self) -> Option<(Finished, Option<Finished>)> {
         let (chosen, other) = self.both()?;
-        Some((self.off_the_ridge(chosen)?, other))
+        let chosen = self.off_the_ridge(chosen)?;
+        Some((self.doubting(chosen), other))
     }
 
     fn both(&mut self) -> Option<(Finished, Option<Finished>)> {
@@ -245,15 +246,15 @@ impl<'a, 'b> Tracks<'a, 'b> {
                 found.spikes = spikes;
             }
         }
-        let covariance = covariance(self.problem, &nuisance, &fitted);
-        let moved_together = moved_together(&nuisance, &fitted, covariance.as_ref());
+        let precision = Precision::new(self.problem, &nuisance, &fitted);
+        let moved_together = moved_together(&nuisance, &fitted, precision.as_ref());
         let dependence = dependence(self.problem, self.nominal, &y);
         let mut finished = Finished {
             track,
             found,
             fitted,
             nuisance,
-            covariance,
+            precision,
             moved: vec![],
             moved_together,
             y,
