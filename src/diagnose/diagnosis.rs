@@ -35,6 +35,8 @@ struct Mended {
     records: Vec<Record>,
     test: Option<Record>,
     faults: Vec<Fault>,
+    /// What is wrong with their clock, if nothing in the machine is.
+    clock: Option<Fault>,
 }
 
 /// Finds what a model's simulation gets wrong on a record, and names it.
@@ -156,8 +158,7 @@ impl<'a> Diagnosis<'a> {
         watch: &dyn Watch,
     ) -> Result<Finding, DiagnoseError> {
         let mended = self.mended(records, test)?;
-        let clock = retimed(self.system, &mended.records)?;
-        let mut finding = match &clock {
+        let mut finding = match &mended.clock {
             None => self.search(&mended.records, mended.test.as_ref(), self.max_causes, watch)?,
             Some(fault) => self.clocked(mended.clone(), fault, watch)?,
         };
@@ -183,12 +184,16 @@ impl<'a> Diagnosis<'a> {
             }
             None => None,
         };
-        if let Some(fault) = flipped(self.system, &all)? {
+        // most records have the sign that they should have
+        let (turned, mut clock) =
+            rayon::join(|| flipped(self.system, &all), || retimed(self.system, &all));
+        if let Some(fault) = turned? {
             all = all.iter().map(|record| fault.mend(record)).collect();
             test = test.map(|record| fault.mend(&record));
             faults.insert(0, fault);
+            clock = retimed(self.system, &all);
         }
-        Ok(Mended { records: all, test, faults })
+        Ok(Mended { records: all, test, faults, clock: clock? })
     }
 
     /// A record whose clock seems to be wrong: if one cause in the machine explains as much, the

@@ -48,8 +48,8 @@ impl Teller<'_, '_> {
     ) -> Result<Finding, DiagnoseError> {
         let system = self.system;
         let extended = self.extend(&chosen.fitted.model)?;
-        let before = test.score(system)?;
-        let after = test.score(&extended)?;
+        let (before, after) = rayon::join(|| test.score(system), || test.score(&extended));
+        let (before, after) = (before?, after?);
         let y_before = self.problem.simulate(start, Grain::Fine);
         let y_before = y_before.unwrap_or_else(|| chosen.y.clone());
         let drives: Vec<&[f64]> = self.joined.drive.inputs.iter().map(Vec::as_slice).collect();

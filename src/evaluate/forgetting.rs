@@ -1,5 +1,7 @@
 //! How far ahead a free run says anything: how fast two runs from nearly the same state part.
 
+use rayon::prelude::*;
+
 use super::run::Run;
 use crate::system::{Drive, Origin};
 
@@ -118,14 +120,14 @@ impl Run<'_> {
         let mut starts = vec![self.plan.signals.initial(); places.len()];
         let (mut length, mut before) = (shortest, f64::INFINITY);
         loop {
-            let mut ends = vec![];
-            for (&from, start) in places.iter().zip(&mut starts) {
+            let follow = |(&from, start): (&usize, &mut Vec<f64>)| {
                 let stretch = from..from + length;
                 let guess = std::mem::take(start);
                 *start = self.start_from(stretch.clone(), origin, length, guess);
-                ends.extend(self.growth(stretch, origin, start).last());
-            }
-            let grown = quantile(ends, 0.5)?;
+                self.growth(stretch, origin, start).last().copied()
+            };
+            let ends: Vec<Option<f64>> = places.par_iter().zip(&mut starts).map(follow).collect();
+            let grown = quantile(ends.into_iter().flatten().collect(), 0.5)?;
             if grown > BEARABLE && grown > EXPONENTIAL * before {
                 break;
             }
