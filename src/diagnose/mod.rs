@@ -20,6 +20,7 @@ mod finding;
 mod finished;
 mod floor;
 mod found;
+mod gain;
 mod grain;
 mod joint;
 mod learned;

@@ -2,11 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::finding::Gain;
 use super::floor::{self, Floor, predicted, predicted_by, repeated};
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Metrics, Run};
-use crate::statistics::{block_sums, blocks, spread};
 use crate::system::System;
 
 /// Data that nothing was fitted to or chosen on.
@@ -118,7 +116,7 @@ fn telling(run: &Run<'_>, from: usize) -> usize {
 
 /// Mean squares in units of the baseline's own error, averaged over outputs: before, after,
 /// and their floor.
-fn mean_square(errors: &[f64]) -> f64 {
+pub(super) fn mean_square(errors: &[f64]) -> f64 {
     let known: Vec<f64> = errors.iter().copied().filter(|e| e.is_finite()).collect();
     if known.len() < errors.len() && known.is_empty() {
         return f64::INFINITY;
@@ -148,44 +146,4 @@ pub(crate) fn removed(
         bottom += (unit - floor) / unit;
     }
     if bottom > 1e-12 { (top / bottom).clamp(0.0, 1.0) } else { 0.0 }
-}
-
-/// The gain with its interval.
-pub(crate) fn gain(before: &Scored, after: &Scored, floors: &[Option<Floor>]) -> Gain {
-    let outputs: Vec<usize> =
-        (0..before.errors.len()).filter(|&o| !before.errors[o].is_empty()).collect();
-    let ratio = |o: usize| mean_square(&after.errors[o]) / mean_square(&before.errors[o]);
-    let ratios: Vec<f64> = outputs.iter().map(|&o| ratio(o)).filter(|r| r.is_finite()).collect();
-    let test_rmse_ratio = (ratios.iter().sum::<f64>() / ratios.len().max(1) as f64).sqrt();
-    let error_removed = removed(before, before, after, floors);
-    // block by block: how much the numerator of that share scatters
-    let mut scatter = 0.0;
-    let mut bottom = 0.0;
-    for &o in &outputs {
-        let unit = mean_square(&before.errors[o]);
-        let floor = floors[o].map_or(0.0, |f| f.std * f.std).min(unit);
-        let doubt = floors[o].map_or(0.0, |f| f.doubt);
-        scatter += (error_removed * doubt * floor / unit).powi(2);
-        let kept: Vec<(f64, f64)> = before.errors[o]
-            .iter()
-            .zip(&after.errors[o])
-            .filter(|(b, a)| b.is_finite() && a.is_finite())
-            .map(|(b, a)| (*b, *a))
-            .collect();
-        let share = error_removed;
-        // the ratio's linearised contribution of every sample
-        let q: Vec<f64> =
-            kept.iter().map(|(b, a)| (b * b - a * a - share * (b * b - floor)) / unit).collect();
-        let count = blocks(&q);
-        let sums = block_sums(&q, count);
-        scatter += (spread(&sums) * (sums.len() as f64).sqrt() / q.len().max(1) as f64).powi(2);
-        bottom += (unit - floor) / unit;
-    }
-    let error = if bottom > 1e-12 { scatter.sqrt() / bottom } else { 0.0 };
-    let (low, high) = (error_removed - 2.0 * error, error_removed + 2.0 * error);
-    Gain {
-        test_rmse_ratio: if test_rmse_ratio.is_finite() { test_rmse_ratio } else { 1.0 },
-        error_removed,
-        interval95: [low.clamp(0.0, 1.0), high.clamp(0.0, 1.0)],
-    }
 }

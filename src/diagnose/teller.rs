@@ -12,11 +12,12 @@ use super::finding::{
 };
 use super::finished::Finished;
 use super::floor::{self, predicted, repeated};
+use super::gain::gain;
 use super::nominal::Nominal;
 use super::problem::{Grain, Model, Part, Problem};
 use super::records::Joined;
 use super::refit::{Refit, refit};
-use super::score::{Counted, TestData, gain};
+use super::score::{Counted, TestData};
 use super::sketch;
 use super::surface;
 use crate::data::Record;
