@@ -2,7 +2,7 @@
 
 use super::candidate::{Candidate, Wire};
 use super::dependence::DEPENDS;
-use super::finding::{Cause, NotFound};
+use super::finding::{Cause, NotFound, Track};
 use super::finished::Finished;
 use super::problem::Part;
 use super::teller::Teller;
@@ -95,6 +95,29 @@ impl Teller<'_, '_> {
     }
 }
 
+/// Says where parameters make up for each other: each that is named, taken back alone, costs little
+/// of the share `removed`.
+pub(crate) fn made_up_for(track: Track, causes: &[Cause], removed: f64) -> Option<String> {
+    let mut named = causes.iter().filter(|c| c.rows.is_none()).peekable();
+    if track != Track::ParametersFree || named.peek().is_none() || removed <= 0.0 {
+        return None;
+    }
+    let mut shares = 0.0;
+    for cause in named {
+        if cause.effect != "parameter" {
+            return None;
+        }
+        shares += cause.error_removed;
+    }
+    (shares < 0.5 * removed).then(|| {
+        format!(
+            "The extended model removes {} of the removable error; without what is named, the other parameters would make up for all but {} of that. The record tells that parameters are wrong, hardly which: hold with --fix those that you are sure of.",
+            super::words::percent(removed),
+            super::words::percent(shares / removed),
+        )
+    })
+}
+
 /// Whether a series goes to one side of 0 only, but for a fiftieth of its largest value.
 fn keeps_its_sign(series: &[f64]) -> bool {
     let low = series.iter().copied().fold(0.0, f64::min);
@@ -104,7 +127,42 @@ fn keeps_its_sign(series: &[f64]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::keeps_its_sign;
+    use super::{Cause, Track, keeps_its_sign, made_up_for};
+
+    fn cause(effect: &str, error_removed: f64) -> Cause {
+        Cause {
+            effect: effect.into(),
+            into: "inertia".into(),
+            of: None,
+            also_into: vec![],
+            also_of: vec![],
+            sentence: String::new(),
+            parameters: vec![],
+            p_value: 0.0,
+            error_removed,
+            indistinguishable: vec![],
+            runners_up: vec![],
+            acts_where: None,
+            records: None,
+            rows: None,
+        }
+    }
+
+    #[test]
+    fn parameters_that_make_up_for_each_other_are_said_to() {
+        let said = |track, causes: &[Cause]| made_up_for(track, causes, 0.99);
+        let hardly = [cause("parameter", 0.001), cause("parameter", 0.01)];
+        let text = said(Track::ParametersFree, &hardly).unwrap();
+        assert!(
+            text.contains("99.0 %") && text.contains("but 1 %") && text.contains("--fix"),
+            "{text}"
+        );
+        assert_eq!(said(Track::ParametersTrusted, &hardly), None);
+        assert_eq!(said(Track::ParametersFree, &[cause("parameter", 0.9)]), None);
+        assert_eq!(said(Track::ParametersFree, &[cause("drag", 0.1), hardly[0].clone()]), None);
+        assert_eq!(said(Track::ParametersFree, &[]), None);
+        assert_eq!(made_up_for(Track::ParametersFree, &hardly, 0.0), None);
+    }
 
     #[test]
     fn one_stroke_keeps_its_sign_and_there_and_back_does_not() {

@@ -17,6 +17,7 @@ use super::nominal::Nominal;
 use super::problem::{Grain, Model, Part, Problem};
 use super::records::Joined;
 use super::refit::{Refit, refit};
+use super::remarks::made_up_for;
 use super::score::{Counted, TestData};
 use super::sketch;
 use super::surface;
@@ -72,6 +73,7 @@ impl Teller<'_, '_> {
             _ => Verdict::CausesFound,
         };
         let mut remarks = self.remarks(chosen, &causes);
+        remarks.extend(made_up_for(chosen.track, &causes, gain.error_removed));
         remarks.extend(false_discovery.as_ref().and_then(FalseDiscovery::in_words));
         let mut series = self.series(chosen, &y_before);
         let unknown = verdict == Verdict::Unexplained && causes.is_empty();
