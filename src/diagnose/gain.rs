@@ -24,7 +24,9 @@ impl Share {
     /// wide where the bottom may be none itself (Fieller, Journal of the Royal Statistical Society
     /// B 16, 1954).
     fn interval(&self) -> [f64; 2] {
-        let (t, b, wide) = (self.top, self.bottom, HALF * HALF);
+        // what is known of any share beforehand: the error is in the numbers if they say otherwise
+        let t = self.top.max(0.0);
+        let (b, wide) = (self.bottom.max(t), HALF * HALF);
         if t == 0.0 && self.of_top == 0.0 {
             return [0.0, 0.0];
         }
@@ -108,8 +110,13 @@ mod tests {
         assert_eq!(share((0.0, 0.1), (0.0, 0.0)).interval(), [0.0, 1.0]);
         // what was removed for sure is not none of it
         let [low, high] = share((0.3, 0.05), (0.1, 0.2)).interval();
-        let left = (0.3 - 0.1 * low).abs() - 2.0 * 0.05f64.hypot(0.2 * low);
+        let left = (0.3 - 0.3 * low).abs() - 2.0 * 0.05f64.hypot(0.2 * low);
         assert!(low > 0.0 && left.abs() < 1e-9 && high == 1.0, "{low} {high}");
+        // more than all is all and less than none is none, each to its error
+        let [low, high] = share((0.5, 0.05), (0.4, 0.02)).interval();
+        assert!((0.75..0.85).contains(&low) && high == 1.0, "{low} {high}");
+        let [low, high] = share((-0.3, 0.05), (1.0, 0.02)).interval();
+        assert!(low == 0.0 && (0.09..0.11).contains(&high), "{low} {high}");
         // nothing changed, nothing is gained
         assert_eq!(share((0.0, 0.0), (0.0, 0.0)).interval(), [0.0, 0.0]);
     }
