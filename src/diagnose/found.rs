@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::candidate::Candidate;
 use super::problem::{Added, Model};
 use super::screen::Screen;
+use super::search::Search;
 
 /// One named cause with everything that cannot be told from it.
 #[derive(Debug, Clone)]
@@ -56,6 +57,27 @@ impl Found {
             return vec![];
         }
         named(&self.model, &self.slots)
+    }
+}
+
+impl Search<'_, '_> {
+    /// What a search begins with, fitted: limits that are known, and causes that others have
+    /// named, the last of them left out as long as the model goes nowhere with it.
+    pub(super) fn beginning(&mut self, start: Model) -> (Model, Vec<Slot>) {
+        let mut slots = vec![];
+        let mut from = self.limited(start, &mut slots);
+        for Begun { added, slot } in std::mem::take(&mut self.begun) {
+            from.added.push(added);
+            slots.push(slot);
+        }
+        let mut model = self.fitted(from.clone());
+        // they were found beside parameters that may be held here
+        while from.added.len() > from.known() && self.present(&model).is_none() {
+            from.added.pop();
+            slots.pop();
+            model = self.fitted(from.clone());
+        }
+        (model, slots)
     }
 }
 

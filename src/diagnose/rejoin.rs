@@ -78,16 +78,14 @@ impl Search<'_, '_> {
     }
 
     /// Two causes that have names and are more probable than a curve or a learned law that was
-    /// `drawn` where `bare` names nothing, as one cause at a time is worth nothing there; not where
-    /// the search has `begun` with causes.
+    /// `drawn` where `bare` names nothing, as one cause at a time is worth nothing there.
     pub(super) fn named_instead(
         &mut self,
         drawn: &Model,
         (mut bare, mut slots): (Model, Vec<Slot>),
-        begun: usize,
     ) -> Option<Vec<Begun>> {
         let is_drawn = drawn.added.iter().any(|added| added.cause.is_drawn());
-        let open = begun == 0 && is_drawn && bare.added.len() == bare.known();
+        let open = is_drawn && bare.added.len() == bare.known();
         if !open || !self.rejoin(&mut bare, &mut slots, true) {
             return None;
         }

@@ -129,14 +129,9 @@ impl<'a, 'b> Search<'a, 'b> {
     pub fn run(mut self, start: Model) -> Option<Found> {
         self.tell(0.0, "simulating the baseline");
         self.flag(&start);
-        let mut slots: Vec<Slot> = vec![];
-        let mut from = self.limited(start.clone(), &mut slots);
-        let begun = self.begun.len();
-        for Begun { added, slot } in std::mem::take(&mut self.begun) {
-            from.added.push(added);
-            slots.push(slot);
-        }
-        let mut model = self.fitted(from);
+        let is_bare = self.begun.is_empty();
+        let (mut model, mut slots) = self.beginning(start.clone());
+        let begun = model.added.len() - model.known();
         self.stand_on(&model);
         let y0 = self.present(&model)?;
         let dependence = dependence(self.problem, self.nominal, &y0);
@@ -159,7 +154,10 @@ impl<'a, 'b> Search<'a, 'b> {
                 full = false;
                 break;
             }
-            let mut before = self.present(&model)?;
+            let Some(mut before) = self.present(&model) else {
+                full = false;
+                break;
+            };
             let known = model.known();
             if number > 0 && self.is_noise(&before) {
                 if doubted.is_none() && self.rejoin(&mut model, &mut slots, false) {
@@ -286,7 +284,7 @@ impl<'a, 'b> Search<'a, 'b> {
                 let bare = (model.clone(), slots.clone());
                 self.shapeless(&mut model, &mut slots);
                 self.learned(&mut model, &mut slots);
-                if let Some(named) = self.named_instead(&model, bare, begun) {
+                if is_bare && let Some(named) = self.named_instead(&model, bare) {
                     self.begun = named;
                     return Some(Found { first, dependence, ..self.run(start)? });
                 }

@@ -102,7 +102,9 @@ impl Exam {
         exam: (u64, usize),
     ) -> Result<Marks, StudyError> {
         let machine = &self.systems[case.system];
-        let made = machine.make(&systems[case.system], case, seed)?;
+        let mut made = machine.make(&systems[case.system], case, seed)?;
+        made.record.source = format!("case {} of the exam", case.number);
+        made.third.source = format!("case {} of the exam, third record", case.number);
         let mut diagnosis = Diagnosis::of(&made.baseline);
         if case.kind == super::Kind::Missing {
             let hidden =
