@@ -1,8 +1,11 @@
 use super::*;
 use crate::data::Record;
+use crate::diagnose::found::Begun;
 use crate::diagnose::library::library;
 use crate::diagnose::prepared::Prepared;
+use crate::diagnose::problem::Added;
 use crate::file::{Format, parse};
+use crate::system::System;
 
 const CART: &str = r#"
 sampling_time = 0.1
@@ -13,25 +16,38 @@ outputs = [{ name = "y", value = "v" }]
 channels = [{ name = "push", into = [{ state = "v" }] }]
 "#;
 
-#[test]
-fn what_diverges_in_the_end_loses_its_last_cause() {
-    let system = parse(CART, "cart.toml", Format::Toml).unwrap();
+/// The cart's record, and an offset and a cubic law that pushes outwards, so that no step
+/// follows it.
+fn pushed(system: &System) -> (Prepared<'_>, [Added; 2]) {
     let u: Vec<f64> = (0..600).map(|k| (0.1 * f64::from(k)).sin()).collect();
     let y = u.clone();
     let record = Record::new(0.1).input("u", u).unwrap().output("y", y).unwrap();
-    let mut prepared = Prepared::new(&system, &[record], 0.7).unwrap();
+    let prepared = Prepared::new(system, &[record], 0.7).unwrap();
     let allowed = Allowed::default();
     let all = library(&prepared.problem, &prepared.nominal, &prepared.start, vec![], &allowed);
-    let cause = |effect: &str| {
+    let added = |effect: &str, knobs: Vec<f64>| {
         let mut into_push = all.iter().filter(|c| c.into == "push");
-        into_push.find(|c| c.effect == effect).unwrap().clone()
+        let cause = into_push.find(|c| c.effect == effect).unwrap().clone();
+        Added { cause, knobs }
     };
-    // a cubic law that pushes outwards, so that no step follows it
-    let (offset, outwards) = (cause("bias"), cause("cubic"));
-    let model = prepared.start.with(&offset, vec![0.1]).with(&outwards, vec![1e9]);
+    let both = [added("bias", vec![0.1]), added("cubic", vec![1e9])];
+    (prepared, both)
+}
+
+fn effects(model: &Model) -> Vec<&str> {
+    model.added.iter().map(|added| added.cause.effect).collect()
+}
+
+#[test]
+fn what_diverges_in_the_end_loses_its_last_cause() {
+    let system = parse(CART, "cart.toml", Format::Toml).unwrap();
+    let (mut prepared, [offset, outwards]) = pushed(&system);
+    let mut model = prepared.start.clone();
+    let slots = vec![Slot::of(&offset.cause), Slot::of(&outwards.cause)];
+    model.added = vec![offset, outwards];
     let found = Found {
         model,
-        slots: vec![Slot::of(&offset), Slot::of(&outwards)],
+        slots,
         first: None,
         last: None,
         dependence: 0.0,
@@ -41,10 +57,25 @@ fn what_diverges_in_the_end_loses_its_last_cause() {
     };
     let held = Nuisance::new(&prepared.problem, &prepared.nominal);
     let Prepared { problem, nominal, start, .. } = &mut prepared;
-    let mut tracks = Tracks { problem, nominal, start, allowed: &allowed, most: 2, watch: &() };
+    let allowed = &Allowed::default();
+    let mut tracks = Tracks { problem, nominal, start, allowed, most: 2, watch: &() };
     let finished = tracks.finish(Track::ParametersTrusted, found, held).unwrap();
-    let kept: Vec<&str> =
-        finished.fitted.model.added.iter().map(|added| added.cause.effect).collect();
-    assert_eq!(kept, ["bias"]);
+    assert_eq!(effects(&finished.fitted.model), ["bias"]);
     assert_eq!(finished.found.slots.len(), 1);
+}
+
+#[test]
+fn a_search_begins_without_the_causes_that_it_can_go_nowhere_with() {
+    let system = parse(CART, "cart.toml", Format::Toml).unwrap();
+    let (mut prepared, begun) = pushed(&system);
+    let held = Nuisance::new(&prepared.problem, &prepared.nominal);
+    let Prepared { problem, nominal, start, .. } = &mut prepared;
+    let allowed = &Allowed::default();
+    let mut tracks = Tracks { problem, nominal, start, allowed, most: 2, watch: &() };
+    let mut search = tracks.begin(held, 2);
+    let slot = |added: &Added| Slot::of(&added.cause);
+    search.begun = begun.map(|added| Begun { slot: slot(&added), added }).into();
+    let (model, slots) = search.beginning(start.clone());
+    assert_eq!(effects(&model), ["bias"]);
+    assert_eq!(slots.len(), 1);
 }
