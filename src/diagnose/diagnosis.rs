@@ -23,6 +23,8 @@ const FIT_OF_ALL: f64 = 0.6;
 const TEST_OF_ALL: f64 = 0.2;
 /// A cause in the machine explains as much as a wrong clock if it removes so much less at most.
 const AS_MUCH: f64 = 0.02;
+/// Parameters named as wrong beside a wrong clock from which on they may be all that is wrong.
+const SEVERAL: usize = 2;
 
 /// First sample of the part of a record that is kept for the test where there is no other.
 pub(super) fn kept_from(record: &Record) -> usize {
@@ -218,9 +220,17 @@ impl<'a> Diagnosis<'a> {
         let mended_test = test.map(|record| fault.mend(record));
         let mut finding = self.search(&records, mended_test.as_ref(), self.max_causes, watch)?;
         if one.track == Track::ParametersFree && !finding.causes.is_empty() {
-            let machine = self.search(&mended.records, test, self.max_causes, watch)?;
+            let mut machine = self.search(&mended.records, test, self.max_causes, watch)?;
             let nothing_left = machine.left.dependence < DEPENDS;
-            if nothing_left && machine.causes.len() <= finding.causes.len() + 1 {
+            let parameters =
+                |of: &Finding| of.causes.iter().filter(|c| c.effect == "parameter").count();
+            let laws = |of: &Finding| of.causes.len() - parameters(of);
+            // parameters that are wrong anyway may make up for a clock, however many it takes
+            let anyway = parameters(&finding) >= SEVERAL && laws(&machine) <= laws(&finding);
+            if nothing_left && (anyway || machine.causes.len() <= finding.causes.len() + 1) {
+                if let Some(first) = machine.causes.first_mut() {
+                    first.indistinguishable.push(fault.alternative());
+                }
                 return Ok(machine);
             }
         }
