@@ -253,6 +253,11 @@ fn an_exam_hides_effects_and_marks_what_is_found() {
     // an effect that cannot be where it is to be hidden is refused before the work
     place.put("bad.toml", &EXAM.replace("\"force\"", "\"forc\""));
     assert!(place.refused("study --config bad.toml --out bad").to_string().contains("forc"));
+    // and so is one that would be the integrator's error
+    let steep = EXAM.replace("effect.cubic = {", "effect.hinge = { start = 1.8, side = 1.0,");
+    place.put("bad.toml", &steep);
+    let error = place.refused("study --config bad.toml --shard 2/3 --out bad --seed 3");
+    assert!(error["message"].as_str().unwrap().contains("case 2 hides hinge (coeff"), "{error}");
     place.put("bad.toml", &EXAM.replace("nulls = 1", "null = 1"));
     assert_eq!(place.refused("study --config bad.toml --out bad")["line"], 4);
 }

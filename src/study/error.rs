@@ -46,6 +46,17 @@ pub enum StudyError {
         /// The sample, the transient included.
         sample: usize,
     },
+    /// A hidden effect that is too steep for the integrator's steps.
+    #[error(
+        "case {case} hides {hidden}: with steps half as long it gives another record, so what is \
+         hidden is the integrator's error"
+    )]
+    Unresolved {
+        /// Number of the case.
+        case: usize,
+        /// What is hidden in it, at the size that was asked for.
+        hidden: String,
+    },
     /// Results of different studies, or none.
     #[error("{path}: {reason}")]
     Merge {
@@ -76,7 +87,7 @@ impl Explain for StudyError {
             Self::File(error) => error.kind(),
             Self::Train(error) => error.kind(),
             Self::Diverges { .. } => Kind::Work,
-            Self::Setting { .. } | Self::Merge { .. } => Kind::Input,
+            Self::Setting { .. } | Self::Unresolved { .. } | Self::Merge { .. } => Kind::Input,
         }
     }
 
@@ -90,6 +101,9 @@ impl Explain for StudyError {
             Self::Train(error) => error.hint(),
             Self::Diverges { .. } => {
                 Some("excite it less, take more substeps, or hide a smaller effect".into())
+            }
+            Self::Unresolved { .. } => {
+                Some("let it act on more of the record, or take more substeps".into())
             }
             Self::Setting { .. } => Some("change it in the configuration".into()),
             Self::Merge { .. } => {

@@ -121,6 +121,16 @@ pub(super) fn seed_of(seed: u64, record: u64, what: u64) -> u64 {
     mixed
 }
 
+/// A number far from those of other seeds: a user's seeds are often neighbours, and what they draw
+/// must have nothing in common.
+pub(super) fn apart(seed: u64) -> u64 {
+    let mut mixed = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    for (by, times) in [(30, 0xbf58_476d_1ce4_e5b9), (27, 0x94d0_49bb_1331_11eb)] {
+        mixed = (mixed ^ (mixed >> by)).wrapping_mul(times);
+    }
+    mixed ^ (mixed >> 31)
+}
+
 impl Generate {
     /// Both records.
     ///
@@ -150,7 +160,7 @@ impl Generate {
         seed: u64,
         number: u64,
     ) -> Result<(Record, BTreeMap<String, OutputTruth>), StudyError> {
-        let signals = system.signals();
+        let (signals, seed) = (system.signals(), apart(seed));
         for (key, name) in self
             .inputs
             .keys()
@@ -228,4 +238,15 @@ pub(super) fn rms(values: &[f64]) -> f64 {
 pub(super) fn deviation(values: &[f64]) -> f64 {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     rms(&values.iter().map(|v| v - mean).collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbouring_seeds_have_no_record_in_common() {
+        let records = (0..100).flat_map(|seed| (0..25).map(move |r| seed_of(apart(seed), r, 0)));
+        assert_eq!(records.collect::<std::collections::HashSet<_>>().len(), 2500);
+    }
 }

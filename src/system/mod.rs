@@ -33,7 +33,7 @@ use crate::real::F64x8;
 pub use error::SystemError;
 pub(crate) use lane::{Drive, Lane, Route, Track};
 pub use placed::{AlsoInto, Placed};
-pub(crate) use plan::{Base, Plan, Way};
+pub(crate) use plan::{Base, MOST_SUBSTEPS, Plan, Way};
 pub(crate) use rates::points;
 pub use sampling::{Hold, Integrator, Method, Sampling};
 pub(crate) use tables::Origin;

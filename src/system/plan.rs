@@ -11,6 +11,9 @@ use super::sampling::{Hold, Method};
 use super::tables::{Origin, Sources, Targets};
 use super::{Placed, Sampling};
 
+/// Steps of the integrator within a sample, at most.
+pub(crate) const MOST_SUBSTEPS: usize = 100_000;
+
 /// How a placed effect is carried out.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Way {
@@ -77,7 +80,7 @@ impl Base {
             return Err(SystemError::SamplingTime(sampling_time));
         }
         let substeps = sampling.integrator.substeps;
-        if substeps == 0 || substeps > 100_000 {
+        if substeps == 0 || substeps > MOST_SUBSTEPS {
             return Err(SystemError::Substeps(substeps));
         }
         let continuous = signals.time.is_continuous();

@@ -4,12 +4,18 @@ use serde::{Deserialize, Serialize};
 
 use super::{Case, Machine};
 use crate::data::{Random, Record, noise};
-use crate::effect::{Mechanism, Role};
+use crate::diagnose::number;
+use crate::effect::{Knob, Mechanism, Role};
 use crate::evaluate::Run;
 use crate::model::with_parameters;
 use crate::study::StudyError;
-use crate::study::generate::{deviation, rms, seed_of};
-use crate::system::{Placed, System};
+use crate::study::generate::{apart, deviation, rms, seed_of};
+use crate::system::{MOST_SUBSTEPS, Placed, System};
+
+/// How far half the step may move the simulation with what is hidden, as a share of the noise;
+/// and how many times as far as it moves the one without.
+const STEADY: f64 = 0.1;
+const TIMES: f64 = 2.0;
 
 /// An effect to hide, as in a model file. Its values say the direction; how far it goes
 /// follows from the wanted size.
@@ -148,7 +154,7 @@ impl Machine {
 
     /// Everything of a case.
     pub(super) fn make(&self, truth: &System, case: &Case, seed: u64) -> Result<Made, StudyError> {
-        let own = seed_of(seed, case.seed, case.system as u64);
+        let own = seed_of(apart(seed), case.seed, case.system as u64);
         let driven = self.driven(truth, case.samples, own)?;
         let diverges = || StudyError::Diverges { sample: 0 };
         let base = self.outputs(truth, &driven)?.ok_or_else(diverges)?;
@@ -160,6 +166,7 @@ impl Machine {
             machine.effects.push(grown);
         }
         let y = self.outputs(&machine, &driven)?.ok_or_else(diverges)?;
+        self.check_steps(case, (truth, &base), (&machine, &y), &driven, &sigmas)?;
         let noisy = y.into_iter().zip(&sigmas).enumerate().map(|(o, (y, &sigma))| {
             let seed = seed_of(own, 1, o as u64);
             let e = match case.noise_pole {
@@ -173,6 +180,43 @@ impl Machine {
         let y = self.outputs(&machine, &other)?.ok_or_else(diverges)?;
         let third = self.measured(&other, truth, y)?;
         Ok(Made { baseline: off(truth, case, own)?, machine, record, third })
+    }
+
+    /// Checks that what is hidden is the machine's and not the integrator's: a law that is too
+    /// steep for the step gives another record with steps half as long.
+    fn check_steps(
+        &self,
+        case: &Case,
+        bare: (&System, &[Vec<f64>]),
+        guilty: (&System, &[Vec<f64>]),
+        driven: &Record,
+        sigmas: &[f64],
+    ) -> Result<(), StudyError> {
+        let moves = |(system, y): (&System, &[Vec<f64>])| -> Result<Vec<f64>, StudyError> {
+            let mut finer = system.clone();
+            let substeps = &mut finer.sampling.integrator.substeps;
+            *substeps = (2 * *substeps).min(MOST_SUBSTEPS);
+            let Some(finer) = self.outputs(&finer, driven)? else {
+                return Ok(vec![f64::INFINITY; y.len()]);
+            };
+            Ok(finer.iter().zip(y).map(|(a, b)| rms(&difference(a, b))).collect())
+        };
+        let (with, without) = (moves(guilty)?, moves(bare)?);
+        let mut moved = with.iter().zip(without).zip(sigmas);
+        if moved.all(|((with, without), sigma)| *with <= (STEADY * sigma).max(TIMES * without)) {
+            return Ok(());
+        }
+        let sizes = |p: &Placed| -> String {
+            let knobs = p.effect.card().knobs;
+            let one = |k: &Knob| format!("{} = {}", k.name, number(k.value, None));
+            knobs.iter().map(one).collect::<Vec<_>>().join(", ")
+        };
+        let hidden = guilty.0.effects[bare.0.effects.len()..].iter();
+        let hidden = hidden.map(|p| format!("{} ({})", p.effect.typetag_name(), sizes(p)));
+        Err(StudyError::Unresolved {
+            case: case.number,
+            hidden: hidden.collect::<Vec<_>>().join(" + "),
+        })
     }
 
     /// A hidden effect so large that it makes the residual 1 + g times the noise.
@@ -194,10 +238,7 @@ impl Machine {
             let mut machine = truth.clone();
             machine.effects.push(placed);
             let Some(y) = self.outputs(&machine, driven)? else { return Ok(f64::INFINITY) };
-            let of = |(o, y): (usize, &Vec<f64>)| {
-                let off: Vec<f64> = y.iter().zip(&base[o]).map(|(a, b)| a - b).collect();
-                rms(&off) / sigmas[o]
-            };
+            let of = |(o, y): (usize, &Vec<f64>)| rms(&difference(y, &base[o])) / sigmas[o];
             Ok(y.iter().enumerate().map(of).fold(0.0, f64::max))
         };
         let (mut low, mut high) = (1e-7, 1.0);
@@ -215,6 +256,10 @@ impl Machine {
         let placed = concealed.grown(low, truth)?;
         placed.ok_or_else(|| StudyError::setting("hidden", concealed.name(), "a possible effect"))
     }
+}
+
+fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
+    a.iter().zip(b).map(|(a, b)| a - b).collect()
 }
 
 /// The model that is handed out: its free parameters off by a share, up or down by lot.
