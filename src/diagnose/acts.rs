@@ -2,12 +2,13 @@
 
 use serde::Serialize;
 
-use super::candidate::Wire;
+use super::candidate::{Candidate, Wire};
 use super::curves::source_of;
 use super::finding::Finding;
 use super::finished::Finished;
+use super::nominal::Nominal;
 use super::number;
-use super::problem::{Added, Grain, Model, Part};
+use super::problem::{Added, Grain, Model, Part, Problem};
 use super::teller::Teller;
 use crate::effect::curve;
 
@@ -70,18 +71,7 @@ impl Teller<'_, '_> {
     fn acts_where(&self, model: &Model, index: usize) -> Option<ActsWhere> {
         let Added { cause, knobs } = &model.added[index];
         let problem = self.problem;
-        let source = source_of(problem, cause)?;
-        let z: Vec<f64> = match cause.wire {
-            // on a path, the coordinate is what goes into it
-            Wire::Path => self.nominal.series(source).to_vec(),
-            _ => {
-                let job = problem.job(model, Grain::Fine)?;
-                let run = problem.system.run_seen(&job.plan, &problem.drive, &job.lane);
-                run.seen.into_iter().nth(source)?
-            }
-        };
-        let counted = problem.samples(Part::All).filter_map(|k| z.get(k).copied());
-        let counted: Vec<f64> = counted.filter(|v| v.is_finite()).collect();
+        let counted = along(problem, self.nominal, model, cause, Grain::Fine)?;
         let knobs = cause.clipped(knobs, problem.step(Grain::Fine));
         let part = part(&counted, &|z| curve(cause.shape.as_ref(), &knobs, z))?;
         Some(ActsWhere {
@@ -92,6 +82,28 @@ impl Teller<'_, '_> {
             share_of_time: part.share,
         })
     }
+}
+
+/// A law's coordinate along the record, where samples count; `None` where it is no curve of one.
+pub(super) fn along(
+    problem: &Problem<'_>,
+    nominal: &Nominal,
+    model: &Model,
+    cause: &Candidate,
+    grain: Grain,
+) -> Option<Vec<f64>> {
+    let source = source_of(problem, cause)?;
+    let z: Vec<f64> = match cause.wire {
+        // on a path, the coordinate is what goes into it
+        Wire::Path => nominal.series(source).to_vec(),
+        _ => {
+            let job = problem.job(model, grain)?;
+            let run = problem.system.run_seen(&job.plan, &problem.drive, &job.lane);
+            run.seen.into_iter().nth(source)?
+        }
+    };
+    let counted = problem.samples(Part::All).filter_map(|k| z.get(k).copied());
+    Some(counted.filter(|v| v.is_finite()).collect())
 }
 
 struct ActingPart {

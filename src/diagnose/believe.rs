@@ -36,7 +36,9 @@ impl Tracks<'_, '_> {
             // weighed against how much better it is
             _ if (1..=trusted.structural()).contains(&free.structural()) => {
                 let is_other = !free.moved.is_empty() || free.structural() < trusted.structural();
-                is_other && self.evidence(&trusted, &free) > DOUBTED
+                // parameters that are not seen to move may make up for a law all the same
+                let taken = if free.count_moved() == 0 { free.settled() } else { 0.0 };
+                is_other && self.evidence(&trusted, &free) - taken > DOUBTED
             }
             _ => free.price() < trusted.price(),
         };

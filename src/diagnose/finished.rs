@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::candidate::{NUMBER, Wire};
 use super::finding::{Moved, Track};
 use super::found::Found;
-use super::nuisance::{Key, Nuisance};
+use super::nuisance::{Key, Nuisance, PRIOR};
 use super::precision::Precision;
 use super::refit::Fitted;
 use crate::model::Signals;
@@ -113,8 +113,24 @@ impl Finished {
         self.fitted.model.cost() + NUMBER * self.count_moved() as f64
     }
 
+    /// Natural logarithm of how much smaller the region is in which the free parameters now are
+    /// than the one in which they were expected (Laplace's approximation).
+    pub(super) fn settled(&self) -> f64 {
+        let free = &self.nuisance.free;
+        let keys: Vec<Key> = free.iter().map(|&(p, _)| Key::Theta(p)).collect();
+        let own = self.precision.as_ref().and_then(|precision| precision.between(&keys));
+        let Some(own) = own else { return 0.0 };
+        let spread = |&(_, from): &(usize, f64)| PRIOR * if from == 0.0 { 1.0 } else { from.abs() };
+        let spread = DVector::from_iterator(free.len(), free.iter().map(spread));
+        let off = free.iter().map(|&(p, from)| self.fitted.model.theta[p] - from);
+        let off = DVector::from_iterator(free.len(), off).component_div(&spread);
+        let own = own.component_div(&(&spread * spread.transpose()));
+        own.cholesky()
+            .map_or(0.0, |c| 0.5 * off.norm_squared() - c.l().diagonal().map(f64::ln).sum())
+    }
+
     /// Parameters moved; along a ridge it is one, whichever.
-    fn count_moved(&self) -> usize {
+    pub(super) fn count_moved(&self) -> usize {
         self.moved.len().max(usize::from(self.moved_together))
     }
 

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use super::acts::along;
 use super::candidate::Candidate;
 use super::found::Slot;
-use super::problem::{Model, Part};
+use super::problem::{Grain, Model, Part};
 use super::search::Search;
 use super::stage::{REFITTED, Trial, stage, trial};
 use crate::statistics::rms;
@@ -20,6 +21,8 @@ const SHARE_OF_SET: f64 = 0.10;
 /// Square of the difference of two predictions, all samples together, in units of the noise's mean
 /// square, below which they are one and the same.
 const SAME: f64 = 0.02;
+/// Share of the samples at either end of a coordinate's range that make no clearance of a line.
+const OUTERMOST: f64 = 0.05;
 /// Members of a named set at most.
 pub(super) const SET: usize = 4;
 
@@ -68,6 +71,24 @@ impl Search<'_, '_> {
         a.cause.unknowns() > b.cause.unknowns() && self.apart(a, b).0 < SAME * b.held
     }
 
+    /// Whether a law is a clearance on one side of which nearly all samples lie, or inside: what is
+    /// seen of it is a straight line, which has plainer names.
+    fn is_not_crossed(&self, trial: &Trial) -> bool {
+        let (model, cause) = (&trial.model, &trial.cause);
+        let own = model.added.iter().find(|a| a.cause.same_cause(cause));
+        let Some(own) = own.filter(|_| cause.effect == "dead_zone") else { return false };
+        let width = own.cause.card.knobs.iter().position(|knob| knob.name == "width");
+        let z = along(self.problem, self.nominal, model, &own.cause, Grain::Coarse);
+        let (Some(width), Some(mut z)) = (width, z) else { return false };
+        z.sort_by(f64::total_cmp);
+        let outer = (OUTERMOST * z.len() as f64) as usize;
+        let (Some(low), Some(high)) = (z.get(outer), z.iter().nth_back(outer)) else {
+            return false;
+        };
+        let width = own.knobs[width].abs();
+        *low > width || *high < -width || *low > -width && *high < width
+    }
+
     /// Square of the difference of two predictions, all samples together, and what each leaves.
     fn apart(&self, a: &Trial, b: &Trial) -> (f64, Vec<f64>, Vec<f64>) {
         let left = |t: &Trial| self.problem.residual(&t.y, Part::All);
@@ -82,6 +103,9 @@ impl Search<'_, '_> {
             .collect();
         let all = set.clone();
         set.retain(|&i| !all.iter().any(|&j| self.is_no_more_than(&trials[i], &trials[j])));
+        let plainest = set.iter().map(|&i| trials[i].cause.unknowns()).min().unwrap_or(0);
+        let is_plain = |t: &Trial| t.cause.unknowns() == plainest;
+        set.retain(|&i| is_plain(&trials[i]) || !self.is_not_crossed(&trials[i]));
         set.sort_by(|&i, &j| {
             let (a, b) = (&trials[i], &trials[j]);
             a.cause.order().cmp(&b.cause.order()).then(a.held.total_cmp(&b.held))
