@@ -21,6 +21,12 @@ const RESTS: f64 = 1e-3;
 const AT_REST: f64 = 0.5;
 /// Share of the time that is all of it.
 const ALWAYS: f64 = 0.9;
+/// Laws that are straight lines where their bend is not met,
+const BENT: [&str; 2] = ["dead_zone", "hinge"];
+/// by all samples but this share at either end of the range,
+const OUTERMOST: f64 = 0.05;
+/// to this share of their largest value.
+const LINE: f64 = 1e-6;
 /// Points at which the range is looked at.
 const POINTS: usize = 2001;
 
@@ -64,8 +70,22 @@ impl Teller<'_, '_> {
             if let Some(acts) = acts.filter(|_| cause.rows.is_none()) {
                 cause.sentence += &format!(" It acts {}.", acts.in_words());
                 cause.acts_where = Some(acts);
+            } else if self.is_straight(&chosen.fitted.model, index) {
+                cause.sentence += " Nearly all of this record lies on one side of its bend, where \
+                                   it is a straight line: a linear law and a constant would do.";
             }
         }
+    }
+
+    /// Whether a law with a bend is a straight line in nearly all of the record.
+    fn is_straight(&self, model: &Model, index: usize) -> bool {
+        let Added { cause, knobs } = &model.added[index];
+        let z = along(self.problem, self.nominal, model, cause, Grain::Fine);
+        let Some(mut z) = z.filter(|_| BENT.contains(&cause.effect)) else { return false };
+        z.sort_by(f64::total_cmp);
+        let outer = (OUTERMOST * z.len() as f64) as usize;
+        let z = &z[outer..z.len() - outer];
+        is_line(z, &curve(cause.shape.as_ref(), knobs, z))
     }
 
     fn acts_where(&self, model: &Model, index: usize) -> Option<ActsWhere> {
@@ -104,6 +124,16 @@ pub(super) fn along(
     };
     let counted = problem.samples(Part::All).filter_map(|k| z.get(k).copied());
     Some(counted.filter(|v| v.is_finite()).collect())
+}
+
+/// Whether values over an ascending coordinate lie on a line that is not zero.
+fn is_line(z: &[f64], w: &[f64]) -> bool {
+    let first = z.first().zip(w.first());
+    let Some(((z0, w0), (z1, w1))) = first.zip(z.last().zip(w.last())) else { return false };
+    let slope = if z1 > z0 { (w1 - w0) / (z1 - z0) } else { 0.0 };
+    let largest = w.iter().fold(0.0, |m: f64, w| m.max(w.abs()));
+    let off = z.iter().zip(w).map(|(z, w)| (w - w0 - slope * (z - z0)).abs());
+    largest > 0.0 && off.fold(0.0, f64::max) < LINE * largest
 }
 
 struct ActingPart {
@@ -152,6 +182,14 @@ mod tests {
         let z: Vec<f64> = (0..1000).map(|k| (f64::from(k) * 0.1).sin()).collect();
         let all = |z: &[f64]| -> Vec<f64> { z.iter().map(|z| law(*z)).collect() };
         part(&z, &all).map(|p| (p.below, p.above, p.share))
+    }
+
+    #[test]
+    fn a_line_is_straight_and_neither_a_bend_nor_nothing_is() {
+        let z: Vec<f64> = (0..100).map(f64::from).collect();
+        let is = |law: fn(f64) -> f64| is_line(&z, &z.iter().map(|z| law(*z)).collect::<Vec<_>>());
+        assert!(is(|z| 3.0 - 0.2 * z) && is(|_| 5.0));
+        assert!(!is(|z| (z - 50.0).max(0.0)) && !is(|_| 0.0) && !is_line(&[], &[]));
     }
 
     #[test]
