@@ -1,4 +1,4 @@
-"""Derives the constants of src/real/elementary: `pip install mpmath`, then run.
+"""Derives the constants of src/core/real/elementary: `pip install mpmath`, then run.
 
 Every polynomial is the weighted minimax fit (Remez exchange in 60 digits); its
 coefficients are rounded to double one by one, lowest first, and the rest refitted

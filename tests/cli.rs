@@ -5,17 +5,15 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
-mod cli {
-    mod calls;
-    mod linear;
-    mod lists;
-    mod model_files;
-    mod pipes;
-    mod plan;
-    mod records;
-    mod refusal;
-    mod work;
-}
+mod calls;
+mod linear;
+mod lists;
+mod model_files;
+mod pipes;
+mod plan;
+mod records;
+mod refusal;
+mod work;
 
 /// A model that takes a moment to simulate.
 const MODEL: &str = "sampling_time = 0.1

@@ -1,12 +1,10 @@
 //! What every plug-in promises, tested for all that are registered.
 
-mod contract {
-    mod drifting;
-    mod extended;
-    mod files;
-    mod neutral;
-    mod numbers;
-    mod refusals;
-    mod shelf;
-    mod slopes;
-}
+mod drifting;
+mod extended;
+mod files;
+mod neutral;
+mod numbers;
+mod refusals;
+mod shelf;
+mod slopes;

@@ -1,9 +1,7 @@
 //! Faults of the data are named as such, with their rows, before the model is blamed.
 
-mod exam;
-
-use exam::plants::{HEATER, MSD, PENDULUM};
-use exam::{Conditions, Plant, USUAL, hidden, names};
+use crate::exam::plants::{HEATER, MSD, PENDULUM};
+use crate::exam::{Conditions, Plant, USUAL, hidden, names};
 use lacuna::data::Record;
 use lacuna::diagnose::{Cause, Diagnosis, Finding, Verdict};
 

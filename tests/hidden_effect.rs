@@ -1,10 +1,8 @@
 //! Hides an effect in the data of two masses and requires it back: name, place and size; and
 //! requires nothing where nothing is hidden.
 
-mod exam;
-
-use exam::plants::{CIRCUIT, HEATER, MSD, PENDULUM, TANKS};
-use exam::{Conditions, Hidden, Plant, USUAL, coefficient, hidden, median, names, value};
+use crate::exam::plants::{CIRCUIT, HEATER, MSD, PENDULUM, TANKS};
+use crate::exam::{Conditions, Hidden, Plant, USUAL, coefficient, hidden, median, names, value};
 use lacuna::diagnose::Verdict;
 
 fn effects() -> Vec<Hidden> {

@@ -9,13 +9,11 @@ use lacuna::evaluate::{Init, Simulation};
 use lacuna::fault::{Explain, told};
 use nalgebra::{DMatrix, DVector};
 
-mod linear {
-    mod accuracy;
-    mod gaps;
-    mod orders;
-    mod real_records;
-    mod refusals;
-}
+mod accuracy;
+mod gaps;
+mod orders;
+mod real_records;
+mod refusals;
 
 /// x_{k+1} = A x_k + B u_k, y_k = C x_k + D u_k.
 struct Truth {

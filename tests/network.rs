@@ -1,13 +1,11 @@
 //! Learned laws of several coordinates: simulated, written beside the model file and read again,
 //! refused with their place.
 
-mod exam;
-
 use std::fs;
 use std::path::PathBuf;
 
-use exam::plants::PENDULUM;
-use exam::{Conditions, USUAL, names};
+use crate::exam::plants::PENDULUM;
+use crate::exam::{Conditions, USUAL, names};
 use lacuna::data::Record;
 use lacuna::diagnose::Diagnosis;
 use lacuna::effect::Shape;

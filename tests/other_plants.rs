@@ -1,10 +1,8 @@
 //! Machines of other kinds, written as equations: six effects in each, from just above the
 //! noise to far above it, one and two at a time.
 
-mod exam;
-
-use exam::plants::{CART, CIRCUIT, HEATER, PENDULUM, TANKS};
-use exam::{Conditions, Hidden, Plant, USUAL, coefficient, hidden, names, value};
+use crate::exam::plants::{CART, CIRCUIT, HEATER, PENDULUM, TANKS};
+use crate::exam::{Conditions, Hidden, Plant, USUAL, coefficient, hidden, names, value};
 
 fn all() -> Vec<(&'static Plant, Vec<Hidden>)> {
     vec![

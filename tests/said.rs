@@ -8,12 +8,10 @@ use lacuna::file::{Format, parse};
 use lacuna::report::Report;
 use lacuna::system::System;
 
-mod said {
-    mod closed_loop;
-    mod distortion;
-    mod records;
-    mod regime;
-}
+mod closed_loop;
+mod distortion;
+mod records;
+mod regime;
 
 /// A mass on a spring, as it is modelled.
 const MODEL: &str = r#"

@@ -58,7 +58,8 @@ const ALL: &str = include_str!("../examples/exam/exam.toml");
 fn marks(name: &str, exam: &str, record: usize, seed: u64) -> Value {
     let folder = std::env::temp_dir().join(format!("lacuna-{name}-{}", std::process::id()));
     std::fs::create_dir_all(&folder).unwrap();
-    let examples = std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/exam"));
+    let examples =
+        std::path::Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/exam"));
     for file in std::fs::read_dir(examples).unwrap() {
         let file = file.unwrap();
         std::fs::copy(file.path(), folder.join(file.file_name())).unwrap();

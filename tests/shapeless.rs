@@ -2,12 +2,10 @@
 //! coordinates, has to find the place and remove the error, and to say so where even that does
 //! not account for it.
 
-mod exam;
-
 use std::collections::BTreeSet;
 
-use exam::plants::{CART, PENDULUM};
-use exam::{Conditions, Hidden, Plant, USUAL, hidden, names, placed};
+use crate::exam::plants::{CART, PENDULUM};
+use crate::exam::{Conditions, Hidden, Plant, USUAL, hidden, names, placed};
 use lacuna::diagnose::{Cause, Diagnosis, Verdict};
 use lacuna::file::{Format, parse, to_toml};
 use lacuna::report::Report;
@@ -154,7 +152,7 @@ fn what_remembers_in_a_way_that_the_library_does_not_is_unexplained_and_shown() 
 
 #[test]
 fn a_learned_law_that_is_a_shape_of_the_library_gets_its_name() {
-    let hidden = hidden!("cubic", "push", Some("place"), |s| exam::coefficient(-s));
+    let hidden = hidden!("cubic", "push", Some("place"), |s| crate::exam::coefficient(-s));
     let c = Conditions { g: 2.0, n: 3000, seed: 5, ..USUAL };
     let (machine, record) = CART.guilty(&[&hidden], c);
     let system = CART.system();

@@ -15,11 +15,15 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 /// All code of a room, which is a folder or a file.
 fn room(name: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let (mut found, folder) = (vec![], root.join("src").join(name));
-    match name {
-        "plugins" => files(&root.join("plugins"), &mut found),
-        _ if folder.is_dir() => files(&folder, &mut found),
-        _ => found.push(folder.with_extension("rs")),
+    let folder = ["src/core", "src/learn", "src", ""]
+        .map(|crates| root.join(crates).join(name))
+        .into_iter()
+        .find(|folder| folder.is_dir() || folder.with_extension("rs").exists());
+    let folder = folder.unwrap_or_else(|| panic!("no room `{name}`"));
+    let mut found = vec![];
+    match folder.is_dir() {
+        true => files(&folder, &mut found),
+        false => found.push(folder.with_extension("rs")),
     }
     let text = |path: &PathBuf| fs::read_to_string(path).unwrap_or_default();
     found.iter().map(text).collect()

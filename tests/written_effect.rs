@@ -1,10 +1,8 @@
 //! Effects that a model file declares as expressions: found when hidden, saved and read again,
 //! simulated like those of the library, refused with their place.
 
-mod exam;
-
-use exam::plants::PENDULUM;
-use exam::{Conditions, Plant, USUAL, hidden, names, rms};
+use crate::exam::plants::PENDULUM;
+use crate::exam::{Conditions, Plant, USUAL, hidden, names, rms};
 use lacuna::data::Record;
 use lacuna::diagnose::{Diagnosis, Verdict};
 use lacuna::effect::{Definition, Shape, WrittenEffect, curve};
@@ -84,12 +82,12 @@ fn a_law_that_the_library_has_gives_what_the_library_gives() {
     let own = parse(
         &(plant.model.to_string()
             + "[effect.mine]\nlaw = \"k*z*abs(z)\"\nparameters = { k = {} }\n"
-            + &exam::placed("torque_on_arm", Some("rate"), "mine = { k = -0.01 }")),
+            + &crate::exam::placed("torque_on_arm", Some("rate"), "mine = { k = -0.01 }")),
         "own.toml",
         Format::Toml,
     )
     .unwrap();
-    let librarys = plant.with(&[exam::placed(
+    let librarys = plant.with(&[crate::exam::placed(
         "torque_on_arm",
         Some("rate"),
         "drag = { coefficient = -0.01 }",
@@ -223,7 +221,7 @@ fn refusals_name_the_place_and_what_to_try() {
 
 #[test]
 fn entries_that_use_a_declared_effect_are_checked_too() {
-    let placed = |effect: &str| exam::placed("torque_on_arm", Some("rate"), effect);
+    let placed = |effect: &str| crate::exam::placed("torque_on_arm", Some("rate"), effect);
     for (effect, key, message) in [
         ("turbulent = { c = -0.1 }", "effects[0].effect.turbulent", "the key `v0` is missing"),
         ("turbulent = { c = -0.1, v = 0.2 }", "effects[0].effect.turbulent.v", "unknown key `v`"),

@@ -6,8 +6,8 @@ use super::args::Check;
 use super::failure::Failure;
 use super::input;
 use super::look::Look;
-use crate::data::Record;
-use crate::diagnose::{Diagnosis, number};
+use lacuna::data::Record;
+use lacuna::diagnose::{Diagnosis, number};
 
 /// Exit status where the data reject the model.
 const REJECTED: u8 = 3;

@@ -5,9 +5,9 @@ use super::diagnose::look_for;
 use super::failure::Failure;
 use super::input;
 use super::look::Look;
-use crate::data::{Record, Table};
-use crate::diagnose::Diagnosis;
-use crate::file::{Format, parse};
+use lacuna::data::{Record, Table};
+use lacuna::diagnose::Diagnosis;
+use lacuna::file::{Format, parse};
 
 /// The model: two masses, without what is hidden in the record.
 const MODEL: &str = include_str!("demo/model.toml");

@@ -7,11 +7,11 @@ use super::args::Diagnose as Args;
 use super::failure::Failure;
 use super::input;
 use super::look::{Look, print};
-use crate::data::Record;
-use crate::diagnose::{Diagnosis, Finding, number};
-use crate::file::save_with;
-use crate::report::Report;
-use crate::system::System;
+use lacuna::data::Record;
+pub use lacuna::diagnose::{Diagnosis, Finding, number};
+use lacuna::file::save_with;
+use lacuna::report::Report;
+use lacuna::system::System;
 
 pub fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;

@@ -6,10 +6,10 @@ use super::args::Estimate as Args;
 use super::failure::Failure;
 use super::input;
 use super::look::Look;
-use crate::data::Record;
-use crate::diagnose::number;
-use crate::estimate::{Estimated, estimate_with};
-use crate::file::save;
+use lacuna::data::Record;
+use lacuna::diagnose::number;
+use lacuna::estimate::{Estimated, estimate_with};
+use lacuna::file::save;
 
 pub fn run(args: &Args, seed: u64, look: &Look) -> Result<u8, Failure> {
     let Some(model) = &args.model else { return super::linear::run(args, look) };

@@ -5,16 +5,16 @@ use std::process::ExitCode;
 use serde_json::json;
 
 use super::look::{Look, print};
-use crate::data::DataError;
-use crate::diagnose::DiagnoseError;
-use crate::estimate::LinearError;
-use crate::evaluate::EvaluateError;
-use crate::fault::{Explain, Kind, Place};
-use crate::file::FileError;
-use crate::lfr::LfrError;
-use crate::study::StudyError;
-use crate::system::SystemError;
-use crate::train::TrainError;
+use lacuna::data::DataError;
+use lacuna::diagnose::DiagnoseError;
+use lacuna::estimate::LinearError;
+use lacuna::evaluate::EvaluateError;
+use lacuna::fault::{Explain, Kind, Place};
+use lacuna::file::FileError;
+use lacuna::lfr::LfrError;
+use lacuna::study::StudyError;
+use lacuna::system::SystemError;
+use lacuna::train::TrainError;
 
 /// What ended a command.
 #[derive(Debug)]
@@ -55,7 +55,7 @@ impl Failure {
         Self {
             kind: error.kind(),
             message: error.to_string(),
-            pretty: crate::fault::told(error),
+            pretty: lacuna::fault::told(error),
             place: error.place(),
             hint: error.hint(),
         }

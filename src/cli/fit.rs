@@ -11,15 +11,15 @@ use super::args::Fit as Args;
 use super::failure::Failure;
 use super::input;
 use super::look::Look;
-use crate::data::Record;
-use crate::diagnose::number;
-use crate::evaluate::{Init, Metrics, Simulation};
-use crate::file::{Document, save_with};
-use crate::lfr::AugmentedModel;
-use crate::report::{Shown, TrainingReport};
-use crate::system::System;
-use crate::train::{Checkpoint, Ended, Epoch, Fit, Follow, Recipe, Run};
-use crate::watch::Watch;
+use lacuna::data::Record;
+use lacuna::diagnose::number;
+use lacuna::evaluate::{Init, Metrics, Simulation};
+use lacuna::file::{Document, save_with};
+use lacuna::lfr::AugmentedModel;
+use lacuna::report::{Shown, TrainingReport};
+use lacuna::system::System;
+use lacuna::train::{Checkpoint, Ended, Epoch, Fit, Follow, Recipe, Run};
+use lacuna::watch::Watch;
 
 /// Share of the data that is kept for validation where no record is given for it.
 const VALIDATION: f64 = 0.2;

@@ -6,9 +6,9 @@ use std::path::Path;
 use super::args::Generate as Args;
 use super::failure::Failure;
 use super::look::Look;
-use crate::diagnose::number;
-use crate::file::{Document, load};
-use crate::study::Generate;
+use lacuna::diagnose::number;
+use lacuna::file::{Document, load};
+use lacuna::study::Generate;
 
 pub fn run(args: &Args, seed: u64, look: &Look) -> Result<u8, Failure> {
     let how: Generate = Document::load(&args.config)?.read()?;

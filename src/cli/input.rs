@@ -4,10 +4,10 @@ use std::path::Path;
 
 use super::failure::Failure;
 use super::look::Look;
-use crate::data::{Record, Remark, Step, Table, Want};
-use crate::evaluate::Init;
-use crate::file::load;
-use crate::system::System;
+use lacuna::data::{Record, Remark, Step, Table, Want};
+use lacuna::evaluate::Init;
+use lacuna::file::load;
+use lacuna::system::System;
 
 /// A system and what it wants of a record.
 pub fn model(path: &Path) -> Result<(System, Want), Failure> {
@@ -19,7 +19,7 @@ pub fn model(path: &Path) -> Result<(System, Want), Failure> {
 /// What a system wants of a record.
 pub fn want(system: &System) -> Result<Want, Failure> {
     let signals = system.signals();
-    let pairs = |signals: &[crate::model::Signal]| {
+    let pairs = |signals: &[lacuna::model::Signal]| {
         signals.iter().map(|s| (s.name.clone(), s.unit.clone())).collect()
     };
     let step = match (signals.time.is_continuous(), system.sampling.sampling_time) {

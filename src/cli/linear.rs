@@ -8,11 +8,11 @@ use super::args::Estimate as Args;
 use super::failure::Failure;
 use super::input;
 use super::look::Look;
-use crate::data::{DataError, Record, Step, Table, Want};
-use crate::diagnose::number;
-use crate::estimate::{LinearEstimate, LinearParameter, Mode, linear_with};
-use crate::fault::Place;
-use crate::file::save;
+use lacuna::data::{DataError, Record, Step, Table, Want};
+use lacuna::diagnose::number;
+use lacuna::estimate::{LinearEstimate, LinearParameter, Mode, linear_with};
+use lacuna::fault::Place;
+use lacuna::file::save;
 
 pub fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
     input::writable(&args.out)?;

@@ -6,10 +6,10 @@ use serde_json::{Value, json};
 use super::args::Args;
 use super::failure::Failure;
 use super::look::{Look, print};
-use crate::effect::{Knob, Needs};
-use crate::file::{Format, parse};
-use crate::model::{Signal, Signals};
-use crate::register::{self, Card, PlugIn};
+use lacuna::effect::{Knob, Needs};
+use lacuna::file::{Format, parse};
+use lacuna::model::{Signal, Signals};
+use lacuna::register::{self, Card, PlugIn};
 
 /// Signals of the example of a model.
 fn signals(card: &Card) -> Option<Signals> {

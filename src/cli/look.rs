@@ -9,7 +9,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::Common;
 use super::failure::Failure;
-use crate::diagnose::Watch;
+use lacuna::diagnose::Watch;
 
 static STOPPED: AtomicBool = AtomicBool::new(false);
 

@@ -4,8 +4,8 @@ use super::args::Plan as Args;
 use super::failure::Failure;
 use super::input;
 use super::look::Look;
-use crate::data::Record;
-use crate::diagnose::Planner;
+use lacuna::data::Record;
+use lacuna::diagnose::Planner;
 
 pub fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;

@@ -6,9 +6,9 @@ use super::args::Simulate;
 use super::failure::Failure;
 use super::input;
 use super::look::Look;
-use crate::data::Record;
-use crate::diagnose::number;
-use crate::evaluate::{Metrics, Simulation};
+use lacuna::data::Record;
+use lacuna::diagnose::number;
+use lacuna::evaluate::{Metrics, Simulation};
 
 pub fn run(args: &Simulate, look: &Look) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.model)?;

@@ -6,10 +6,10 @@ use super::args::{Study as Args, StudyVerb};
 use super::failure::Failure;
 use super::input;
 use super::look::Look;
-use crate::data::Record;
-use crate::diagnose::number;
-use crate::file::Document;
-use crate::study::{ExamResult, Inputs, MonteCarlo, StudyResult};
+use lacuna::data::Record;
+use lacuna::diagnose::number;
+use lacuna::file::Document;
+use lacuna::study::{ExamResult, Inputs, MonteCarlo, StudyResult};
 
 mod exam;
 

@@ -7,6 +7,7 @@ use serde::Serialize;
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
 use super::finding::{Cause, Finding, Verdict};
+use super::records::name_of;
 use super::shown::{InRecord, in_words};
 use crate::data::Record;
 use crate::evaluate::{Init, Simulation};
@@ -41,7 +42,7 @@ impl Diagnosis<'_> {
         if records.len() < 2 || records.len() > RECORDS || named {
             return Ok(());
         }
-        let names: Vec<String> = records.iter().enumerate().map(|(i, r)| r.name(i)).collect();
+        let names: Vec<String> = records.iter().enumerate().map(|(i, r)| name_of(r, i)).collect();
         for (record, name) in records.iter().zip(&names) {
             if record.len() < SAMPLES || watch.stopped() {
                 continue;

@@ -9,8 +9,8 @@ use super::problem::{Grain, Model, Problem};
 use super::records::{Joined, join};
 use super::teller::Teller;
 use super::track::Tracks;
+use crate::Track;
 use crate::data::Record;
-use crate::diagnose::Track;
 use crate::evaluate::{EvaluateError, Init, Run};
 use crate::system::System;
 use crate::watch::Watch;
@@ -151,7 +151,7 @@ fn diverges(source: &str) -> EvaluateError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::file::{Format, parse};
+    use lacuna_core::file::{Format, parse};
 
     #[test]
     fn time_goes_on_in_the_windows_of_a_long_record() {

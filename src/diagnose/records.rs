@@ -44,13 +44,11 @@ impl Finding {
     }
 }
 
-impl Record {
-    /// What one of several records is called: its file, or its number.
-    pub(super) fn name(&self, index: usize) -> String {
-        match self.source.as_str() {
-            "" => format!("record {}", index + 1),
-            source => source.into(),
-        }
+/// What one of several records is called: its file, or its number, counted from `index` 0.
+pub(super) fn name_of(record: &Record, index: usize) -> String {
+    match record.source.as_str() {
+        "" => format!("record {}", index + 1),
+        source => source.into(),
     }
 }
 
@@ -99,7 +97,7 @@ pub(crate) fn join(signals: &Signals, records: &[Record]) -> Result<Joined, Diag
             joined.drive.segments.push(segment.start + offset..segment.end + offset);
             joined.drive.origins.push(offset as i64 - record.before as i64);
         }
-        joined.names.push(record.name(joined.spans.len()));
+        joined.names.push(name_of(record, joined.spans.len()));
         joined.spans.push(offset..offset + record.len());
     }
     Ok(joined)

@@ -1,11 +1,11 @@
 use super::*;
 use crate::data::Record;
-use crate::diagnose::found::Begun;
-use crate::diagnose::library::library;
-use crate::diagnose::prepared::Prepared;
-use crate::diagnose::problem::Added;
-use crate::file::{Format, parse};
+use crate::found::Begun;
+use crate::library::library;
+use crate::prepared::Prepared;
+use crate::problem::Added;
 use crate::system::System;
+use lacuna_core::file::{Format, parse};
 
 const CART: &str = r#"
 sampling_time = 0.1

@@ -4,7 +4,7 @@ use super::candidate::{Candidate, Wire};
 use super::finding::Value;
 
 /// A number with as many digits as its uncertainty deserves.
-pub(crate) fn number(value: f64, error: Option<f64>) -> String {
+pub fn number(value: f64, error: Option<f64>) -> String {
     let digits = match error {
         Some(e) if e > 0.0 && e.is_finite() => 1 - e.log10().floor() as i32,
         _ if value == 0.0 => 1,

@@ -78,7 +78,7 @@ pub fn estimate(system: &System, records: &[Record], seed: u64) -> Result<Estima
 }
 
 /// The same with parameters held by name, and somebody who watches.
-pub(crate) fn estimate_with(
+pub fn estimate_with(
     system: &System,
     records: &[Record],
     held: &[String],

@@ -66,7 +66,7 @@ pub struct Start {
 
 /// What the jobs of a study work on.
 #[derive(Debug)]
-pub(crate) struct Inputs {
+pub struct Inputs {
     pub system: System,
     pub training: Vec<Record>,
     pub validation: Vec<Record>,
@@ -116,7 +116,7 @@ impl MonteCarlo {
     }
 
     /// Tells studies apart that must not be mixed.
-    pub(crate) fn fingerprint(&self, inputs: &Inputs, seed: u64) -> Result<u64, StudyError> {
+    pub fn fingerprint(&self, inputs: &Inputs, seed: u64) -> Result<u64, StudyError> {
         let text = serde_json::to_string(self)
             .map_err(|error| StudyError::merge(&PathBuf::from("settings"), error))?;
         let mut print = Fingerprint::new().bytes(text.as_bytes()).bytes(&seed.to_le_bytes());

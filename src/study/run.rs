@@ -22,7 +22,7 @@ impl MonteCarlo {
     /// # Errors
     ///
     /// The first error of a job; the others end as well.
-    pub(crate) fn run(
+    pub fn run(
         &self,
         inputs: &Inputs,
         jobs: &[Job],

@@ -1,7 +1,7 @@
 //! Arguments: help, versions, and calls that cannot be understood.
 
-use super::super::{MODEL, record, run, scratch};
 use super::refusal::{At, refused};
+use super::{MODEL, record, run, scratch};
 
 const NOWHERE: At<'static> = At { file: "", line: 0, column: 0, key: "" };
 

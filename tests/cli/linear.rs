@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::super::{record, run, scratch};
 use super::refusal::{At, refused};
+use super::{record, run, scratch};
 
 /// A second-order machine, its record with columns `time [s],u [N],y [m]`.
 const LINEAR: &str = "sampling_time = 0.1

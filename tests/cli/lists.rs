@@ -1,6 +1,6 @@
 //! `models`, `effects`, `completions`.
 
-use super::super::{run, scratch};
+use super::{run, scratch};
 
 #[test]
 fn models_and_effects_with_parameters_and_units() {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
-use super::super::{MODEL, record, scratch};
 use super::refusal::{At, refused};
+use super::{MODEL, record, scratch};
 
 const FILE: &str = "machine.toml";
 

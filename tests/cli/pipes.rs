@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::Read;
 use std::process::Stdio;
 
-use super::super::{MODEL, command, record, run, scratch};
+use super::{MODEL, command, record, run, scratch};
 
 #[test]
 fn a_reader_that_leaves_ends_the_program_quietly() {

@@ -1,7 +1,7 @@
 //! `plan`: what a record can see and tell apart.
 
-use super::super::{MODEL, record, run, scratch};
 use super::refusal::{At, refused};
+use super::{MODEL, record, run, scratch};
 
 #[test]
 fn plan_says_what_a_record_tells_and_proposes_more() {

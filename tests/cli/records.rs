@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use super::super::{MODEL, run, scratch};
 use super::refusal::{At, refused};
+use super::{MODEL, run, scratch};
 
 fn folder(name: &str) -> PathBuf {
     let folder = scratch(name);

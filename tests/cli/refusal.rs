@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use super::super::run;
+use super::run;
 
 /// What is said about a fault. A place that does not apply is 0 or empty.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::super::{MODEL, Ran, record, run, scratch};
+use super::{MODEL, Ran, record, run, scratch};
 
 fn folder(name: &str, samples: usize, noise: f64) -> PathBuf {
     let folder = scratch(name);

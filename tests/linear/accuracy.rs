@@ -1,6 +1,6 @@
 //! Random stable systems of order 1 to 6, found back from noisy records.
 
-use super::super::*;
+use super::*;
 
 /// Largest and median error of the impulse response, over orders 1 to 6 and `seeds`.
 fn errors(

@@ -1,6 +1,6 @@
 //! Several records, missing values, slow and integrating machines.
 
-use super::super::*;
+use super::*;
 
 const NOISE: Noise = Noise { share: 0.05, pole: 0.0 };
 

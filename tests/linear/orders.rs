@@ -1,6 +1,6 @@
 //! The order, where nobody says it.
 
-use super::super::*;
+use super::*;
 
 #[test]
 fn orders_are_found_without_being_told() {

@@ -1,6 +1,6 @@
 //! Linear models of measured records: simulation error on test records.
 
-use super::super::*;
+use super::*;
 
 fn read(folder: &Path, name: &str) -> Record {
     Record::csv(folder.join(name)).unwrap().u_and_y().unwrap()

@@ -1,6 +1,6 @@
 //! Records of which no linear model can be made.
 
-use super::super::*;
+use super::*;
 
 fn record(samples: usize) -> Record {
     let mut random = Random::new(9);

@@ -1,6 +1,6 @@
 //! Inputs that react to the output.
 
-use super::super::*;
+use super::*;
 
 /// A heater of first order, as it is modelled: exact between samples of 0.1 s.
 const HEATER: &str = r#"

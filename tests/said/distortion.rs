@@ -6,7 +6,7 @@ use lacuna::data::{Excitation, Record};
 use lacuna::diagnose::{Diagnosis, Finding};
 use lacuna::file::{Format, parse};
 
-use super::super::*;
+use super::*;
 
 const SECTION: &str = "Distortion at lines that the input leaves empty";
 

@@ -2,7 +2,7 @@
 
 use lacuna::diagnose::Cause;
 
-use super::super::*;
+use super::*;
 
 const FRICTION: &str = "coulomb_friction = { level = -0.5, width = 0.01 }";
 

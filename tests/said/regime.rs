@@ -2,7 +2,7 @@
 
 use lacuna::data::FilteredNoise;
 
-use super::super::*;
+use super::*;
 
 const SECTION: &str = "Where the error lives";
 

@@ -3,12 +3,12 @@
 use std::path::Path;
 
 use super::{Args, all_unless};
-use crate::cli::failure::Failure;
-use crate::cli::input;
-use crate::cli::look::Look;
-use crate::file::Document;
-use crate::study::{Exam, ExamResult};
-use crate::system::System;
+use crate::failure::Failure;
+use crate::input;
+use crate::look::Look;
+use lacuna::file::Document;
+use lacuna::study::{Exam, ExamResult};
+use lacuna::system::System;
 
 pub fn run(
     document: &Document,
@@ -22,7 +22,7 @@ pub fn run(
     let (i, n) = args.shard.unwrap_or((1, 1));
     let cases = exam.share(i, n)?;
     let beside = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
-    let load = |machine: &crate::study::Machine| Ok(input::model(&beside(&machine.model))?.0);
+    let load = |machine: &lacuna::study::Machine| Ok(input::model(&beside(&machine.model))?.0);
     let systems: Vec<System> = exam.systems.iter().map(load).collect::<Result<_, Failure>>()?;
     look.hear_interrupts()?;
     let done = exam.run(&systems, &cases, all_unless(threads), seed, &args.out, look)?;

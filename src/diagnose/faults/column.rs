@@ -2,8 +2,8 @@
 
 use super::{Fault, FaultKind};
 use crate::data::Record;
-use crate::diagnose::floor::{Left, predicted};
 use crate::evaluate::{EvaluateError, Init, Simulation};
+use crate::floor::{Left, predicted};
 use crate::system::System;
 
 /// Misfits are mean squares over the output's variance, averaged over outputs. Beyond this one a

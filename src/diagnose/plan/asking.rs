@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use super::look::{Asked, Look, Sensor};
 use super::planning::Planning;
-use crate::diagnose::candidate::Candidate;
-use crate::diagnose::nuisance::Nuisance;
-use crate::diagnose::prepared::Prepared;
-use crate::diagnose::probes::{Probe, Sharing, steer};
-use crate::diagnose::problem::{Grain, Part, Problem, Span};
+use crate::candidate::Candidate;
+use crate::nuisance::Nuisance;
+use crate::prepared::Prepared;
+use crate::probes::{Probe, Sharing, steer};
+use crate::problem::{Grain, Part, Problem, Span};
 use crate::statistics::{deviation, median, rms};
 use crate::system::{Drive, Origin};
 

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::diagnose::candidate::Candidate;
-use crate::diagnose::nuisance::{Nuisance, set};
-use crate::diagnose::probes::Sharing;
-use crate::diagnose::problem::{Grain, Job, Model, Part, Problem, Span};
+use crate::candidate::Candidate;
+use crate::nuisance::{Nuisance, set};
+use crate::probes::Sharing;
+use crate::problem::{Grain, Job, Model, Part, Problem, Span};
 use crate::statistics::{add_to_basis, dot, project};
 use crate::system::Track;
 

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashSet};
 
 use serde::Serialize;
 
-use crate::diagnose::{NoiseFloor, Track};
+use crate::{NoiseFloor, Track};
 
 /// A supposed cause by name.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize)]

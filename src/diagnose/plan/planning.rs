@@ -7,12 +7,12 @@ use super::look::{Left, Look, with_sensors};
 use super::outlook::{Experiment, LookAlikes, Outlook};
 use super::visible::{shows, supposed, visibility};
 use super::{ALIKE, ENOUGH, experiments};
-use crate::diagnose::candidate::{Candidate, Wire};
-use crate::diagnose::finding::{NoiseFloor, Track};
-use crate::diagnose::library::{Allowed, library};
-use crate::diagnose::nuisance::Nuisance;
-use crate::diagnose::prepared::Prepared;
-use crate::diagnose::problem::Part;
+use crate::candidate::{Candidate, Wire};
+use crate::finding::{NoiseFloor, Track};
+use crate::library::{Allowed, library};
+use crate::nuisance::Nuisance;
+use crate::prepared::Prepared;
+use crate::problem::Part;
 use crate::watch::Watch;
 
 /// A model and a record, about to be looked at.
@@ -101,7 +101,7 @@ impl Planning<'_, '_> {
         if let Some(looks) = with_sensors(problem, start, &asked, nuisance, &sensors) {
             for (sensor, look) in sensors.iter().zip(looks) {
                 let unit = if sensor.unit.is_empty() { "" } else { " " };
-                let size = crate::diagnose::number(sensor.noise, None);
+                let size = crate::number(sensor.noise, None);
                 let described = format!(
                     "a sensor of {} beside those there are, with noise of {size}{unit}{}",
                     sensor.name, sensor.unit

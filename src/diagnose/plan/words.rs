@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::outlook::{Experiment, LookAlikes, Outlook, Visibility};
-use crate::diagnose::{Track, number};
+use crate::{Track, number};
 
 /// Names in one list at most.
 const NAMES: usize = 12;

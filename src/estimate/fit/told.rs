@@ -1,10 +1,10 @@
 //! What a fit found, in the model's own terms.
 
 use super::{Estimate, Estimated, Fit, Key};
-use crate::estimate::rank::unseen;
 use crate::evaluate::EvaluateError;
 use crate::model::with_parameters;
 use crate::optimise::Levenberg;
+use crate::rank::unseen;
 use crate::statistics::covariance;
 use crate::system::{Placed, System};
 

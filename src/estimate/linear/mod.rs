@@ -105,7 +105,7 @@ pub fn linear(records: &[Record], order: Option<usize>) -> Result<LinearEstimate
 }
 
 /// The same with somebody who watches.
-pub(crate) fn linear_with(
+pub fn linear_with(
     records: &[Record],
     order: Option<usize>,
     watch: &dyn Watch,

@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Exam, Machine};
 use crate::data::Random;
-use crate::study::{StudyError, shard};
+use crate::{StudyError, shard};
 
 /// Draws of several effects before some that belong together are taken after all.
 const DRAWS: u64 = 100;

@@ -3,13 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use super::{Case, Machine};
+use crate::StudyError;
 use crate::data::{Random, Record, noise};
 use crate::diagnose::number;
 use crate::effect::{Knob, Mechanism, Role};
 use crate::evaluate::Run;
+use crate::generate::{apart, deviation, rms, seed_of};
 use crate::model::with_parameters;
-use crate::study::StudyError;
-use crate::study::generate::{apart, deviation, rms, seed_of};
 use crate::system::{MOST_SUBSTEPS, Placed, System};
 
 /// How far half the step may move the simulation with what is hidden, as a share of the noise;

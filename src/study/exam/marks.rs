@@ -4,9 +4,9 @@ use serde::{Deserialize, Serialize};
 
 use super::machine::Made;
 use super::{Case, Kind, Machine};
+use crate::StudyError;
 use crate::diagnose::{Cause, Finding, Verdict};
 use crate::evaluate::{Init, Simulation};
-use crate::study::StudyError;
 use crate::system::{Placed, System};
 
 /// Standard errors to either side of a 95 % interval.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::{Hit, Kind, Marks};
-use crate::study::{Quartiles, StudyError};
+use crate::{Quartiles, StudyError};
 
 /// All marks of an exam, in the order of its cases.
 #[derive(Debug, Clone, PartialEq)]
@@ -130,7 +130,7 @@ impl ExamResult {
     }
 
     /// Whether a folder holds marks of an exam.
-    pub(crate) fn lies_in(folder: &Path) -> bool {
+    pub fn lies_in(folder: &Path) -> bool {
         folder.join("marks").is_dir()
     }
 

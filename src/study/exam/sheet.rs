@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use super::{ExamResult, Kind, Tally};
+use crate::StudyError;
+use crate::job::write;
 use crate::report::{Figure, Page, Scale};
-use crate::study::StudyError;
-use crate::study::job::write;
 
 /// Colours of the machines, in turn.
 const CLASSES: [&str; 5] = ["measured", "before", "after", "floor", "law"];

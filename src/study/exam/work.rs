@@ -5,9 +5,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use super::{Case, Exam, Marks};
+use crate::StudyError;
 use crate::diagnose::Diagnosis;
-use crate::study::StudyError;
-use crate::study::job::write;
+use crate::job::write;
 use crate::system::System;
 use crate::train::Fingerprint;
 use crate::watch::Watch;
@@ -34,7 +34,7 @@ impl Exam {
     /// # Errors
     ///
     /// The first error of a case; the others end as well.
-    pub(crate) fn run(
+    pub fn run(
         &self,
         systems: &[System],
         cases: &[Case],

@@ -1,7 +1,0 @@
-//! The shelf: systems and effects that come with the library.
-//!
-//! Every file says `use lacuna::prelude::*;` and could be moved into a stranger's crate
-//! unchanged.
-
-pub mod effects;
-pub mod systems;

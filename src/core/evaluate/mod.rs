@@ -1,0 +1,12 @@
+//! Says how wrong a model is, in the output's unit.
+
+mod error;
+mod forgetting;
+mod metric;
+mod run;
+mod simulate;
+
+pub use error::EvaluateError;
+pub use metric::Metrics;
+pub use run::{Run, drive, measured};
+pub use simulate::{Init, Simulation};

@@ -1,0 +1,35 @@
+//! Numbers, models, effects, records, simulation and model files: what every other part of
+//! lacuna stands on. Users read about it in the crate `lacuna`, which re-exports it.
+
+// plug-ins and examples say `lacuna::`, wherever they are compiled
+extern crate self as lacuna;
+
+pub mod data;
+pub mod effect;
+pub mod evaluate;
+pub mod fault;
+pub mod file;
+pub mod model;
+pub mod optimise;
+pub mod real;
+pub mod register;
+pub mod statistics;
+pub mod system;
+pub mod watch;
+
+#[doc(hidden)]
+pub mod __private {
+    pub use inventory;
+    pub use typetag;
+}
+
+/// What a plug-in or a short program needs.
+pub mod prelude {
+    pub use crate::effect::{
+        CandidateEffect, Effect, EffectCard, Felt, Knob, Mechanism, Named, Needs, Places, Role,
+        Search, SignRule, UnitRule, View,
+    };
+    pub use crate::model::{At, Fault, Physics, Signals, StateSpaceModel};
+    pub use crate::real::Real;
+    pub use serde::{Deserialize, Serialize};
+}

@@ -1,0 +1,71 @@
+//! What a system does in one instant, known or supposed.
+//!
+//! A model has two faces. People write [`Physics`], generic in its number, in the letters
+//! of the textbook. The library calls [`Law`], which is object-safe and answers for whole
+//! blocks of lanes at once; a blanket implementation turns the first into the second.
+//! [`StateSpaceModel`] is the registered trait: empty, with `Law` below it.
+
+mod at;
+pub mod equations;
+mod lane_number;
+mod law;
+pub mod linearised;
+pub mod lti;
+mod march;
+mod physics;
+pub mod probe;
+mod signals;
+
+pub use at::At;
+pub use lane_number::{DIRECTIONS, Dual32, Dual64, LaneNumber};
+pub use law::{Ask, Block, Call, Fault, Law, Matrices, Pull, PullCall, Sizes};
+pub use march::{March, MarchCall, Stage, Way};
+pub use physics::Physics;
+pub use signals::{Parameter, Quantity, Signal, Signals, State, TimeKind};
+
+/// A state-space model x' = f(x, u, w), y = h(x, u) that model files can name.
+///
+/// Implement [`Physics`] (or, rarely, [`Law`]) and let
+/// [`register!`](crate::register!) fill this in.
+#[typetag::serde]
+pub trait StateSpaceModel: Law {}
+
+/// The same model with other values of some parameters, written where the model keeps them.
+///
+/// # Errors
+///
+/// If the model does not take these values.
+pub fn with_parameters(
+    model: &dyn StateSpaceModel,
+    changes: &[(String, f64)],
+) -> Result<Box<dyn StateSpaceModel>, serde_json::Error> {
+    let mut tree = serde_json::to_value(model)?;
+    for (parameter, value) in changes {
+        let key = format!("{}.{}", model.typetag_name(), model.key(parameter));
+        let mut at = Some(&mut tree);
+        for part in key.split('.') {
+            at = at.and_then(|node| match part.parse::<usize>() {
+                Ok(index) if node.is_array() => node.get_mut(index),
+                _ => node.get_mut(part),
+            });
+        }
+        match at {
+            Some(entry) => *entry = serde_json::json!(value),
+            None => {
+                let missing = format!("parameter `{parameter}` has no place `{key}` in the model");
+                return Err(serde::de::Error::custom(missing));
+            }
+        }
+    }
+    serde_json::from_value(tree)
+}
+
+/// A copy through the model's own serialised form.
+///
+/// # Errors
+///
+/// If the model does not survive its own serialisation, which the contract test rules out
+/// for registered models.
+pub fn copied(model: &dyn StateSpaceModel) -> Result<Box<dyn StateSpaceModel>, serde_json::Error> {
+    serde_json::from_value(serde_json::to_value(model)?)
+}

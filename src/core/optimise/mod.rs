@@ -1,0 +1,75 @@
+//! Lowers a number by moving a vector.
+//!
+//! An [`Objective`] is a number to lower, with its slope; a [`LeastSquares`] a sum of
+//! squares to lower, with its residuals. An [`Optimiser`] moves the vector, tells an
+//! [`Observer`] after every step, and says why it stopped ([`Outcome`]): reaching a limit
+//! is an outcome, not an error. [`shelf`] holds problems with known answers that every
+//! optimiser has to solve.
+//!
+//! ```
+//! use lacuna::optimise::{Lbfgs, Optimiser, Stopped, shelf};
+//!
+//! let rosenbrock = shelf::rosenbrock(2);
+//! let mut theta = rosenbrock.start.clone();
+//! let outcome = Lbfgs::default().minimise(&rosenbrock, &mut theta, &mut ())?;
+//! assert_eq!(outcome.stopped, Stopped::Converged);
+//! assert!((theta[0] - 1.0).abs() < 1e-6 && (theta[1] - 1.0).abs() < 1e-6);
+//! # Ok::<(), lacuna::optimise::OptimiseError>(())
+//! ```
+
+mod adam;
+mod bounds;
+mod error;
+mod lbfgs;
+pub mod levenberg;
+mod marquardt;
+mod objective;
+mod observe;
+mod schedule;
+pub mod shelf;
+mod stop;
+mod unknown;
+
+pub use adam::{Adam, AdamState, AdamStep};
+pub use bounds::{Bounds, Transformed};
+pub use error::OptimiseError;
+pub use lbfgs::Lbfgs;
+pub use levenberg::{Levenberg, Settings, Unknown};
+pub use marquardt::LevenbergMarquardt;
+pub use objective::{LeastSquares, Objective};
+pub use observe::{Observer, Outcome, Progress, Stopped};
+pub use schedule::Schedule;
+pub use stop::Stop;
+pub use stop::Watch;
+
+/// A method that lowers an [`Objective`]; configuration files name it.
+///
+/// # Example
+///
+/// ```
+/// use lacuna::optimise::Optimiser;
+///
+/// let text = "[adam]\nrate = 0.01\nstop = { steps = 500 }";
+/// let optimiser: Box<dyn Optimiser> = toml::from_str(text)?;
+/// assert_eq!(optimiser.typetag_name(), "adam");
+/// # Ok::<(), toml::de::Error>(())
+/// ```
+#[typetag::serde]
+pub trait Optimiser: std::fmt::Debug + Send + Sync {
+    /// Moves `theta` to lower `objective`, at most as long as the own rules allow.
+    ///
+    /// `theta` has [`Objective::len`] entries; afterwards it holds the best point met, also
+    /// after an error. `observer` is told after every step and may end the run.
+    ///
+    /// # Errors
+    ///
+    /// A setting out of range, a vector of another length than the objective's, an
+    /// objective that is not a finite number at the start, or one that stays so however
+    /// small the steps become.
+    fn minimise(
+        &self,
+        objective: &dyn Objective,
+        theta: &mut [f64],
+        observer: &mut dyn Observer,
+    ) -> Result<Outcome, OptimiseError>;
+}

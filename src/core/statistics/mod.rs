@@ -1,0 +1,19 @@
+//! Tests and intervals that stay honest when residuals are not white.
+
+mod averaged;
+mod basis;
+mod blocks;
+mod lines;
+mod plans;
+mod sandwich;
+mod spectrum;
+
+pub use averaged::Averaged;
+pub use basis::{add_to_basis, project};
+pub use blocks::{
+    autocorrelation, block_sums, blocks, corrected_score, deviation, dot, mean, median, mixture,
+    normal_tail, odds, rms, spread, wald, weight, whiteness,
+};
+pub use lines::lines;
+pub use sandwich::covariance;
+pub use spectrum::{pieces, power, strongest};

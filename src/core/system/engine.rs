@@ -1,0 +1,440 @@
+//! The simulation: groups of lanes, each with its own effects, through one law.
+
+use crate::model::{Ask, Block, Law};
+use crate::per_isa;
+
+use super::arithmetic::{add, euler, flush, magnitude, move_along, rk4};
+use super::exact::Exact;
+use super::group::Group;
+use super::lane::{Drive, Lane, Track, pack};
+use super::plan::Plan;
+use super::sampling::{Hold, Method};
+use super::wiring::EffectNumber;
+
+/// Magnitude beyond which a state counts as diverged.
+const BEYOND: f64 = 1e150;
+
+/// Simulates groups of lanes over all segments of a drive; all plans share one base.
+///
+/// With `seen`, every lane also records the table of sources at every sample.
+pub fn simulate<R: EffectNumber>(
+    law: &dyn Law,
+    drive: &Drive,
+    groups: &[(&Plan, &[Lane])],
+    seen: bool,
+) -> Vec<Vec<Track>> {
+    let Some(mut run) = Run::<R>::new(law, groups) else { return vec![] };
+    let n = drive.len();
+    let base = groups[0].0;
+    let blank = |count: usize| vec![vec![f64::NAN; n]; count];
+    let track = |_: &Lane| Track {
+        y: blank(base.sizes.y),
+        diverged_at: None,
+        seen: blank(if seen { base.sources.entries.len() } else { 0 }),
+        last: vec![],
+    };
+    let mut tracks: Vec<Vec<Track>> =
+        groups.iter().map(|(_, lanes)| lanes.iter().map(track).collect()).collect();
+    for (number, segment) in drive.segments.iter().enumerate() {
+        run.start(groups, number);
+        run.origin = drive.origins.get(number).copied().unwrap_or(0);
+        for k in segment.clone() {
+            run.sample(drive, k, segment.end, &mut tracks);
+            if tracks.iter().flatten().all(|track| track.diverged_at.is_some()) {
+                break;
+            }
+        }
+    }
+    run.last(&mut tracks);
+    tracks
+}
+
+per_isa! {
+    /// One stage with whole registers moved at a time: what is stored in pieces is read back late.
+    fn stage['a, R: EffectNumber](run: &mut Run<'a, R>, i: usize, slot: usize, time: f64) {
+        run.rates(i, slot, time);
+    }
+}
+
+/// Working storage of one block: what all packs share.
+struct Run<'a, R> {
+    base: &'a Plan,
+    law: &'a dyn Law,
+    packs: usize,
+    groups: Vec<Group<'a, R>>,
+    theta: Vec<R>,
+    /// Parameters at this instant, where some drift.
+    theta_now: Vec<R>,
+    derived: Vec<R>,
+    /// What the law derives from the parameters before they drift.
+    still: Vec<R>,
+    x: Vec<R>,
+    xt: Vec<R>,
+    /// Room for states or their rates.
+    room: Vec<R>,
+    k: [Vec<R>; 4],
+    u: [Vec<R>; 3],
+    /// Inputs with what effects add, and what enters the own channels.
+    u_in: Vec<R>,
+    w: Vec<R>,
+    no_w: Vec<R>,
+    y: Vec<R>,
+    sums: Vec<R>,
+    exact: Option<Exact<R>>,
+    /// Whether any effect acts inside the stages.
+    inside: bool,
+    /// Whether any of them enters an input.
+    into_inputs: bool,
+    fine: bool,
+    /// Whether parameters drift, and the time up to which they have.
+    drifting: bool,
+    drifted: Option<f64>,
+    first: bool,
+    /// Sample at which time is 0.
+    origin: i64,
+    time: f64,
+}
+
+impl<'a, R: EffectNumber> Run<'a, R> {
+    fn new(law: &'a dyn Law, groups: &[(&'a Plan, &[Lane])]) -> Option<Self> {
+        let (base, _) = *groups.first()?;
+        let n = base.sizes;
+        let (mut packs, mut theta, mut all) = (0, vec![], vec![]);
+        let mut made = vec![];
+        for &(plan, lanes) in groups {
+            let group = Group::<R>::new(plan, lanes, packs);
+            let mut own = pack::<R>(lanes, group.packs, n.theta, |lane, i| lane.theta[i]);
+            group.set_values(&mut own);
+            theta.extend(own);
+            // the exact step needs a lane for every place, also for those that repeat
+            let last = lanes.len().saturating_sub(1);
+            all.extend((0..group.packs * R::LANES).filter_map(|l| lanes.get(l.min(last))));
+            packs += group.packs;
+            made.push(group);
+        }
+        let zeros = |count: usize| vec![R::constant(0.0); packs * count];
+        Some(Self {
+            exact: base.linear.then(|| Exact::new(base, law, &all, packs)).flatten(),
+            inside: made.iter().any(|group| group.inside),
+            into_inputs: made.iter().any(Group::enters_inputs),
+            drifting: made.iter().any(Group::is_drifting),
+            drifted: None,
+            fine: made.iter().any(|group| group.outputs.fine),
+            theta_now: theta.clone(),
+            groups: made,
+            base,
+            law,
+            packs,
+            theta,
+            derived: zeros(n.derived),
+            still: zeros(n.derived),
+            x: zeros(n.x),
+            xt: zeros(n.x),
+            room: zeros(n.x),
+            k: [zeros(n.x), zeros(n.x), zeros(n.x), zeros(n.x)],
+            u: [zeros(n.u), zeros(n.u), zeros(n.u)],
+            u_in: zeros(n.u),
+            w: zeros(n.w),
+            no_w: zeros(n.w),
+            y: zeros(n.y),
+            sums: zeros(1),
+            first: true,
+            origin: 0,
+            time: 0.0,
+        })
+    }
+
+    /// Puts every lane at the start of a segment.
+    fn start(&mut self, groups: &[(&Plan, &[Lane])], segment: usize) {
+        let n = self.base.sizes.x;
+        let initial = self.base.signals.initial();
+        for (group, (_, lanes)) in self.groups.iter_mut().zip(groups) {
+            let x = pack::<R>(lanes, group.packs, n, |lane, i| {
+                lane.starts.get(segment).or(lane.starts.last()).map_or(initial[i], |x| x[i])
+            });
+            self.x[group.first * n..][..x.len()].copy_from_slice(&x);
+            group.restart();
+        }
+        self.first = true;
+    }
+
+    /// Gives the outputs at sample `k` and moves to the next one.
+    fn sample(&mut self, drive: &Drive, k: usize, end: usize, tracks: &mut [Vec<Track>]) {
+        let base = self.base;
+        let h = base.step();
+        for j in 0..base.substeps {
+            self.time = (k as i64 - self.origin).max(0) as f64 * base.sampling_time + j as f64 * h;
+            self.drift(self.time);
+            self.drive(drive, k, end, j);
+            for group in &mut self.groups {
+                group.inputs(&mut self.u, h);
+            }
+            if j == 0 || self.fine {
+                self.output(h);
+            }
+            if j == 0 {
+                self.store(k, tracks);
+            }
+            self.advance(h);
+            self.first = false;
+            for group in &mut self.groups {
+                group.started();
+            }
+        }
+        self.watch(k, tracks);
+    }
+
+    /// Inputs at the start, middle and end of step `j`.
+    fn drive(&mut self, drive: &Drive, k: usize, end: usize, j: usize) {
+        let base = self.base;
+        let next = if k + 1 < end { k + 1 } else { k };
+        if base.hold == Hold::Zero && j > 0 && !self.groups.iter().any(|g| g.has_input_paths()) {
+            return; // still there from the first step
+        }
+        for (i, series) in drive.inputs.iter().enumerate() {
+            for (slot, at) in [0.0, 0.5, 1.0].into_iter().enumerate() {
+                let share = (j as f64 + at) / base.substeps as f64;
+                let value = match base.hold {
+                    Hold::Zero => series[k],
+                    Hold::First => series[k] + (series[next] - series[k]) * share,
+                };
+                for pack in 0..self.packs {
+                    self.u[slot][pack * base.sizes.u + i] = R::constant(value);
+                }
+            }
+        }
+    }
+
+    /// Parameters at a given time, and what the law derives from them.
+    fn drift(&mut self, time: f64) {
+        let known = self.drifted.replace(time);
+        if known == Some(time) || known.is_some() && !self.drifting {
+            return;
+        }
+        let drifting = self.groups.iter().filter(|group| group.is_drifting());
+        drifting.clone().for_each(|group| group.drift(time, &self.theta, &mut self.theta_now));
+        let n = self.base.sizes;
+        if n.derived == 0 {
+            return;
+        }
+        let block = Block {
+            sizes: n,
+            packs: self.packs,
+            theta: &self.theta,
+            derived: &[],
+            x: &self.x,
+            u: &self.u[0],
+            w: &self.w,
+            time: R::constant(time),
+        };
+        if known.is_none() {
+            self.law.answer(Ask::Derived, R::call(&block, &mut self.still));
+            self.derived.copy_from_slice(&self.still);
+        }
+        let block = Block { theta: &self.theta_now, ..block };
+        for group in drifting {
+            let packs = group.places();
+            let out = &mut self.derived[packs.start * n.derived..packs.end * n.derived];
+            self.law.answer(Ask::Derived, R::call(&block.part(packs), out));
+        }
+    }
+
+    /// Asks the law at the present or the trial state.
+    fn ask(&mut self, ask: Ask, slot: usize, time: f64) {
+        let block = Block {
+            sizes: self.base.sizes,
+            packs: self.packs,
+            theta: &self.theta_now,
+            derived: &self.derived,
+            x: &self.x,
+            u: &self.u[slot],
+            w: &self.no_w,
+            time: R::constant(time),
+        };
+        self.law.answer(ask, R::call(&block, &mut self.y));
+    }
+
+    /// Outputs now, after everything that sits in their paths.
+    fn output(&mut self, h: f64) {
+        self.ask(Ask::Output, 0, self.time);
+        let ny = self.base.sizes.y;
+        for group in &mut self.groups {
+            let packs = group.places();
+            let seen = [&self.theta_now, &self.derived, &self.x, &self.u[0]];
+            let at = group.instant(self.law, seen, self.time);
+            let y = &mut self.y[packs.start * ny..packs.end * ny];
+            group.outputs(&at, y, h, self.first);
+        }
+    }
+
+    fn store(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
+        let ny = self.base.sizes.y;
+        for (group, tracks) in self.groups.iter().zip(tracks.iter_mut()) {
+            for (l, track) in tracks.iter_mut().enumerate() {
+                if track.diverged_at.is_some() {
+                    continue;
+                }
+                let (pack, lane) = (group.first + l / R::LANES, l % R::LANES);
+                for (o, series) in track.y.iter_mut().enumerate() {
+                    series[k] = self.y[pack * ny + o].lane(lane);
+                    if !series[k].is_finite() {
+                        track.diverged_at = Some(k);
+                    }
+                }
+            }
+        }
+        if tracks.iter().flatten().any(|track| !track.seen.is_empty()) {
+            self.see(k, tracks);
+        }
+    }
+
+    /// Records the table of sources.
+    fn see(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
+        let base = self.base;
+        for (group, tracks) in self.groups.iter_mut().zip(tracks) {
+            let seen = [&self.theta_now, &self.derived, &self.x, &self.u[0]];
+            let at = group.instant(self.law, seen, self.time);
+            let table = group.table(&at);
+            let entries = base.sources.entries.len();
+            for (l, track) in tracks.iter_mut().enumerate() {
+                for (i, series) in track.seen.iter_mut().enumerate() {
+                    series[k] = table[l / R::LANES * entries + i].lane(l % R::LANES);
+                }
+            }
+        }
+    }
+
+    /// Marks lanes whose state is no longer finite, and flushes what would be subnormal.
+    fn watch(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
+        flush(&mut self.x, R::FLUSH);
+        magnitude(&self.x, self.base.sizes.x, &mut self.sums);
+        for (group, tracks) in self.groups.iter_mut().zip(tracks) {
+            flush(&mut group.s, R::FLUSH);
+            for (l, track) in tracks.iter_mut().enumerate() {
+                let size = self.sums[group.first + l / R::LANES].lane(l % R::LANES);
+                if track.diverged_at.is_none() && !(size < BEYOND) {
+                    track.diverged_at = Some(k + 1);
+                }
+            }
+        }
+    }
+
+    /// Rates of all states at a trial state: stage `i`, with the inputs at `slot`.
+    fn stage(&mut self, i: usize, slot: usize, time: f64) {
+        self.drift(time);
+        stage(self, i, slot, time);
+    }
+
+    /// The same, once parameters have drifted.
+    #[inline(always)]
+    fn rates(&mut self, i: usize, slot: usize, time: f64) {
+        let base = self.base;
+        let n = base.sizes;
+        let x = if i == 0 { &self.x } else { &self.xt };
+        let mut u = &self.u[slot];
+        if self.inside {
+            if self.into_inputs {
+                self.u_in.copy_from_slice(u);
+            }
+            self.w.fill(R::constant(0.0));
+            for group in self.groups.iter_mut().filter(|group| group.inside) {
+                let packs = group.places();
+                let seen = [&self.theta_now, &self.derived, x, u];
+                let at = group.instant(self.law, seen, time);
+                let w = &mut self.w[packs.start * n.w..packs.end * n.w];
+                let u_in = &mut self.u_in[packs.start * n.u..packs.end * n.u];
+                group.enter(&at, i, w, u_in);
+            }
+            if self.into_inputs {
+                u = &self.u_in;
+            }
+        }
+        let out = &mut self.k[i];
+        let block = Block {
+            sizes: n,
+            packs: self.packs,
+            theta: &self.theta_now,
+            derived: &self.derived,
+            x,
+            u,
+            w: &self.w,
+            time: R::constant(time),
+        };
+        if let Some(exact) = &mut self.exact {
+            exact.note(i, u, &self.u[slot], &self.w);
+            let still = Block { theta: &self.theta, derived: &self.still, ..block };
+            for group in self.groups.iter().filter(|group| group.is_drifting()) {
+                let packs = group.places();
+                let rows = packs.start * n.x..packs.end * n.x;
+                let (now, then) = (&mut out[rows.clone()], &mut self.room[rows.clone()]);
+                self.law.answer(Ask::Derivative, R::call(&block.part(packs.clone()), now));
+                self.law.answer(Ask::Derivative, R::call(&still.part(packs), then));
+                exact.note_drift(i, rows.start, now, then);
+            }
+            return;
+        }
+        self.law.answer(Ask::Derivative, R::call(&block, out));
+        if !base.declared_channels && self.inside {
+            add(out, &self.w);
+        }
+    }
+
+    /// One integration step, or one sample of a discrete law.
+    fn advance(&mut self, h: f64) {
+        let (t, base) = (self.time, self.base);
+        if let (Some(exact), false) = (&self.exact, self.inside || self.drifting) {
+            exact.finish(&mut self.x, &mut self.room, &self.u, false);
+            return;
+        }
+        self.stage(0, 0, t);
+        if !base.signals.time.is_continuous() {
+            std::mem::swap(&mut self.x, &mut self.k[0]);
+        } else if base.method == Method::Euler && self.exact.is_none() {
+            move_along(&mut self.x, &self.k[0], h);
+        } else {
+            self.trial(0, h, 0.5);
+            self.stage(1, 1, t + 0.5 * h);
+            self.trial(1, h, 0.5);
+            self.stage(2, 1, t + 0.5 * h);
+            self.trial(2, h, 1.0);
+            self.stage(3, 2, t + h);
+            if let Some(exact) = &self.exact {
+                exact.finish(&mut self.x, &mut self.room, &self.u, true);
+            } else {
+                rk4(&mut self.x, &self.k, h);
+            }
+            for group in &mut self.groups {
+                rk4(&mut group.s, &group.ks, h);
+                group.commit();
+            }
+            return;
+        }
+        for group in &mut self.groups {
+            move_along(&mut group.s, &group.ks[0], h);
+            group.commit();
+        }
+    }
+
+    /// The trial state after stage `i`.
+    fn trial(&mut self, i: usize, h: f64, share: f64) {
+        if let Some(exact) = &self.exact {
+            exact.trial(i, &mut self.xt, &self.x, &self.u);
+        } else {
+            euler(&mut self.xt, &self.x, &self.k[i], h * share);
+        }
+        for group in self.groups.iter_mut().filter(|group| !group.s.is_empty()) {
+            euler(&mut group.st, &group.s, &group.ks[i], h * share);
+        }
+    }
+
+    /// Hands out the states after the last sample.
+    fn last(&self, tracks: &mut [Vec<Track>]) {
+        let n = self.base.sizes.x;
+        for (group, tracks) in self.groups.iter().zip(tracks) {
+            for (l, track) in tracks.iter_mut().enumerate() {
+                let pack = group.first + l / R::LANES;
+                track.last = (0..n).map(|i| self.x[pack * n + i].lane(l % R::LANES)).collect();
+            }
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Filters that sit in the path of an input or an output: lag, delay, play.
+//!
+//! A path carries three values per integration step, at its start, middle and end. Under
+//! zero-order hold all three are equal, and a filter answers with its mean over the step,
+//! so that its effect goes to nothing smoothly as the time constant or the delay does.
+
+use crate::model::LaneNumber;
+
+/// Values of a path at the start, middle and end of one integration step.
+pub type Three<R> = [R; 3];
+
+/// y' = (u - y) / tau, solved exactly for an input that is constant or linear over a step.
+#[derive(Debug, Clone)]
+pub struct LagState<R> {
+    value: Vec<R>,
+    started: bool,
+}
+
+impl<R: LaneNumber> LagState<R> {
+    pub fn new(packs: usize) -> Self {
+        Self { value: vec![R::constant(0.0); packs], started: false }
+    }
+
+    pub fn restart(&mut self) {
+        self.started = false;
+    }
+
+    /// Call after the first step of a segment.
+    pub fn start(&mut self) {
+        self.started = true;
+    }
+
+    /// Advances over one step of length `h`; a time constant of 0 passes everything
+    /// through untouched.
+    pub fn advance(&mut self, pack: usize, tau: R, h: f64, u: Three<R>, held: bool) -> Three<R> {
+        if !self.started {
+            self.value[pack] = u[0];
+        }
+        let y = self.value[pack];
+        let over = |part: f64| (-(R::constant(h * part) / tau)).exp();
+        let full = over(1.0);
+        let answer = if held {
+            // mean of u + (y - u) exp(-t / tau) over the step
+            let end = u[0] + (y - u[0]) * full;
+            let mean = u[0] + (y - u[0]) * (tau / h) * (-full + 1.0);
+            self.value[pack] = end;
+            [mean, mean, mean]
+        } else {
+            let slope = (u[2] - u[0]) / h;
+            let at = |part: f64, decay: R| {
+                let line = u[0] + slope * (R::constant(h * part) - tau);
+                line + (y - u[0] + slope * tau) * decay
+            };
+            let end = at(1.0, full);
+            let middle = at(0.5, over(0.5));
+            self.value[pack] = end;
+            [y, middle, end]
+        };
+        let keep = |filtered: R, raw: R| tau.where_positive(filtered, raw);
+        self.value[pack] = keep(self.value[pack], u[2]);
+        [keep(answer[0], u[0]), keep(answer[1], u[1]), keep(answer[2], u[2])]
+    }
+}
+
+/// u(t - d), with the first value held before the start.
+#[derive(Debug, Clone)]
+pub struct DelayLine<R> {
+    /// Values at the starts of past steps, newest last written at `head`.
+    ring: Vec<R>,
+    packs: usize,
+    depth: usize,
+    head: usize,
+    filled: usize,
+}
+
+impl<R: LaneNumber> DelayLine<R> {
+    /// A line that can look `steps` integration steps back.
+    pub fn new(packs: usize, steps: usize) -> Self {
+        let depth = steps + 3;
+        Self { ring: vec![R::constant(0.0); packs * depth], packs, depth, head: 0, filled: 0 }
+    }
+
+    pub fn restart(&mut self) {
+        self.filled = 0;
+    }
+
+    /// Makes room for one more step; call once before the packs are pushed.
+    pub fn turn(&mut self) {
+        self.head = (self.head + 1) % self.depth;
+        self.filled = (self.filled + 1).min(self.depth);
+    }
+
+    /// Stores a pack's value at the start of the step and reads the three delayed values.
+    pub fn advance(&mut self, pack: usize, delay: R, h: f64, u: Three<R>, held: bool) -> Three<R> {
+        self.ring[self.head * self.packs + pack] = u[0];
+        let mut answer = u;
+        for lane in 0..R::LANES {
+            let back = delay.lane(lane) / h;
+            if !(back > 0.0) {
+                continue;
+            }
+            if held {
+                // share of the step during which the older value still arrives
+                let whole = back.floor();
+                let part = back - whole;
+                let newer = self.past(pack, lane, whole as usize);
+                let older = self.past(pack, lane, whole as usize + 1);
+                let mean = if part == 0.0 { newer } else { (1.0 - part) * newer + part * older };
+                for value in &mut answer {
+                    value.set_lane(lane, mean);
+                }
+            } else {
+                for (value, offset) in answer.iter_mut().zip([0.0, 0.5, 1.0]) {
+                    value.set_lane(lane, self.line(pack, lane, offset - back, u[2].lane(lane)));
+                }
+            }
+        }
+        answer
+    }
+
+    /// Value on the straight lines between step starts, `at` steps from the newest start;
+    /// up to one step ahead of it towards `end`.
+    fn line(&self, pack: usize, lane: usize, at: f64, end: f64) -> f64 {
+        let newest = self.past(pack, lane, 0);
+        if at >= 0.0 {
+            return newest + at * (end - newest);
+        }
+        let whole = (-at).floor();
+        let part = -at - whole;
+        let newer = self.past(pack, lane, whole as usize);
+        let older = self.past(pack, lane, whole as usize + 1);
+        newer + part * (older - newer)
+    }
+
+    /// The value `steps` starts ago, the oldest known one before the start.
+    fn past(&self, pack: usize, lane: usize, steps: usize) -> f64 {
+        let steps = steps.min(self.filled.saturating_sub(1)).min(self.depth - 1);
+        let slot = (self.head + self.depth - steps) % self.depth;
+        self.ring[slot * self.packs + pack].lane(lane)
+    }
+}
+
+/// Play: the output follows only once the input has crossed the gap of +-width.
+#[derive(Debug, Clone)]
+pub struct PlayState<R> {
+    value: Vec<R>,
+    started: bool,
+}
+
+impl<R: LaneNumber> PlayState<R> {
+    pub fn new(packs: usize) -> Self {
+        Self { value: vec![R::constant(0.0); packs], started: false }
+    }
+
+    pub fn restart(&mut self) {
+        self.started = false;
+    }
+
+    /// Call after the first step of a segment.
+    pub fn start(&mut self) {
+        self.started = true;
+    }
+
+    /// The answer at a trial value, without moving.
+    #[inline(always)]
+    pub fn trial(&self, pack: usize, width: R, u: R) -> R {
+        let from = if self.started { self.value[pack] } else { u };
+        from.max(u - width).min(u + width)
+    }
+
+    /// Moves to a value and answers.
+    pub fn advance(&mut self, pack: usize, width: R, u: R) -> R {
+        let value = self.trial(pack, width, u);
+        self.value[pack] = value;
+        value
+    }
+}

@@ -1,0 +1,9 @@
+//! The learned part: networks, the interconnection matrix S, encoders and joint training.
+//! Users read about it in the crate `lacuna`, which re-exports it.
+
+pub mod encoder;
+pub mod lfr;
+pub mod network;
+pub mod train;
+
+use lacuna_core::{data, fault, model, optimise, per_lanes, real, register, system};

@@ -1,0 +1,113 @@
+//! What is needed to go on after the program has ended, by whatever cause.
+
+use std::fs::{self, File};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::TrainError;
+use super::fit::Epoch;
+use crate::optimise::AdamState;
+
+/// Where and how often progress is written down.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Checkpoint {
+    /// The file. It is replaced in one go: a program that is killed leaves the last whole one.
+    pub path: PathBuf,
+    /// Steps between two checkpoints: what is lost at most.
+    #[serde(default = "hundred")]
+    pub every: usize,
+}
+
+fn hundred() -> usize {
+    100
+}
+
+/// Everything that a run consists of between two steps. Numbers survive to the last bit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct State {
+    /// What the run was started with.
+    pub fingerprint: u64,
+    /// Epochs finished, steps taken in the present one.
+    pub epoch: usize,
+    pub step: usize,
+    /// Parameters in the optimiser's units, and before the last step.
+    pub theta: Vec<f64>,
+    pub before: Vec<f64>,
+    pub adam: AdamState,
+    /// Sum of the losses of the present epoch.
+    pub loss: f64,
+    /// Best score so far, the parameters that have it, and the epoch.
+    pub best: Option<(f64, Vec<f64>, usize)>,
+    /// Steps taken back: in the present epoch, in a row, in all.
+    pub rolled_back: usize,
+    pub in_a_row: usize,
+    pub rollbacks: usize,
+    pub history: Vec<Epoch>,
+}
+
+impl State {
+    /// Reads a checkpoint, if there is one.
+    pub fn read(path: &Path, fingerprint: u64) -> Result<Option<Self>, TrainError> {
+        let fault = |reason: String| TrainError::File { path: path.display().to_string(), reason };
+        let text = match fs::read_to_string(path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(fault(error.to_string())),
+        };
+        let state: Self = serde_json::from_str(&text).map_err(|error| fault(error.to_string()))?;
+        if state.fingerprint != fingerprint {
+            let (path, what) = (path.display().to_string(), "settings, model or records");
+            return Err(TrainError::OtherRun { path, what });
+        }
+        Ok(Some(state))
+    }
+
+    /// Writes a checkpoint: to a new file beside it, to the disk, then into its place.
+    pub fn write(&self, path: &Path) -> Result<(), TrainError> {
+        let attempt = || -> std::io::Result<()> {
+            if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
+                fs::create_dir_all(folder)?;
+            }
+            let mut name = path.file_name().unwrap_or_default().to_os_string();
+            name.push(".new");
+            let fresh = path.with_file_name(name);
+            let mut file = File::create(&fresh)?;
+            file.write_all(serde_json::to_string(self)?.as_bytes())?;
+            file.sync_all()?;
+            fs::rename(&fresh, path)
+        };
+        attempt().map_err(|error| TrainError::File {
+            path: path.display().to_string(),
+            reason: error.to_string(),
+        })
+    }
+}
+
+/// A number that changes when anything among these texts and numbers does (FNV-1a).
+#[derive(Debug, Clone, Copy)]
+pub struct Fingerprint(u64);
+
+impl Fingerprint {
+    pub fn new() -> Self {
+        Self(0xcbf2_9ce4_8422_2325)
+    }
+
+    pub fn bytes(mut self, bytes: &[u8]) -> Self {
+        for &byte in bytes {
+            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+        }
+        self
+    }
+
+    pub fn numbers(self, numbers: &[f64]) -> Self {
+        numbers.iter().fold(self, |print, number| print.bytes(&number.to_bits().to_le_bytes()))
+    }
+
+    pub fn finish(self) -> u64 {
+        self.0
+    }
+}

@@ -1,0 +1,33 @@
+//! Fits model and encoder together on short sections.
+//!
+//! An [`Augmented`] model is an interconnection and the encoder that starts it. A
+//! [`Trainer`] lowers the truncated loss of Hoekstra et al., eq. `loss_function`, over all
+//! sections of one or several records, in batches, by Adam, and keeps the model that is best
+//! on records it does not learn from. [`MultipleShooting`] is loss and gradient alone.
+
+mod augmented;
+mod batch;
+mod checkpoint;
+mod course;
+mod error;
+mod fit;
+mod guess;
+mod recipe;
+mod run;
+mod scale;
+mod sections;
+mod shooting;
+mod steps;
+mod trainer;
+mod validate;
+
+pub use augmented::{Augmented, Run};
+pub use checkpoint::Checkpoint;
+pub use error::TrainError;
+pub use fit::{Ended, Epoch, Fit, Follow};
+pub use recipe::Recipe;
+pub use shooting::{Arithmetic, MultipleShooting, Shooting};
+pub use trainer::Trainer;
+pub use validate::{Score, Validation};
+
+pub use checkpoint::Fingerprint;

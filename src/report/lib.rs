@@ -1,0 +1,147 @@
+//! Turns results into one HTML file that needs nothing else.
+
+use lacuna_core::{data, evaluate};
+use lacuna_diagnose as diagnose;
+use lacuna_learn::train;
+
+mod analysis;
+mod cause;
+mod distortion;
+mod page;
+mod signals;
+pub(crate) mod svg;
+mod tables;
+mod training;
+
+use std::path::Path;
+
+use crate::diagnose::{Finding, Verdict, number};
+pub use page::Page;
+pub use svg::{Figure, Scale};
+
+pub use training::{Shown, TrainingReport};
+
+/// The report of a diagnosis: one self-contained HTML page.
+///
+/// ```no_run
+/// # fn show(finding: &lacuna::diagnose::Finding) -> std::io::Result<()> {
+/// lacuna::report::Report::of(finding).titled("press").write("report.html".as_ref())
+/// # }
+/// ```
+#[derive(Debug, Clone)]
+pub struct Report<'a> {
+    finding: &'a Finding,
+    title: String,
+}
+
+impl<'a> Report<'a> {
+    /// The report of a finding.
+    pub fn of(finding: &'a Finding) -> Self {
+        Self { finding, title: "Diagnosis".into() }
+    }
+
+    /// The same with a title: what was diagnosed.
+    #[must_use]
+    pub fn titled(mut self, title: &str) -> Self {
+        self.title = title.into();
+        self
+    }
+
+    /// Writes the page to a file.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be written.
+    pub fn write(&self, path: &Path) -> std::io::Result<()> {
+        std::fs::write(path, self.html())
+    }
+
+    /// What the model lacks at a cause's place, against the coordinate, as an SVG file's text;
+    /// `None` where there is no such cause, or no curve of it.
+    pub fn picture(&self, cause: usize) -> Option<String> {
+        let curve = self.finding.series.curves.iter().find(|c| c.cause == cause)?;
+        Some(cause::figure(curve).file())
+    }
+
+    /// The page.
+    pub fn html(&self) -> String {
+        let finding = self.finding;
+        let mut page = Page::default();
+        page.element("p", "kicker", &self.title);
+        if finding.interrupted {
+            page.element("p", "note", "The search was interrupted: this is what was known.");
+        }
+        self.headline(&mut page);
+        for index in 0..finding.causes.len() {
+            cause::section(&mut page, finding, index);
+        }
+        cause::unexplained(&mut page, finding);
+        cause::alone(&mut page, finding);
+        signals::sections(&mut page, &finding.series, finding);
+        distortion::section(&mut page, finding);
+        tables::sections(&mut page, finding);
+        page.raw(FOOTER);
+        page.html(&format!("{} - lacuna", self.title))
+    }
+
+    fn headline(&self, page: &mut Page) {
+        let finding = self.finding;
+        let many = finding.causes.len() > 1;
+        if many {
+            let what = match finding.verdict {
+                Verdict::DataFault => "The data are at fault, in more than one way.".into(),
+                _ => format!("{} causes explain what the model gets wrong.", finding.causes.len()),
+            };
+            page.element("h1", "", &what);
+            for cause in &finding.causes {
+                page.element("p", "gain", &cause.sentence);
+            }
+        } else {
+            page.element("h1", "", &finding.to_string());
+        }
+        if finding.causes.is_empty() {
+            let note = match finding.verdict {
+                Verdict::Unexplained => {
+                    "The pictures below show where the simulation is off; the ranking shows what \
+                     came nearest. A record with another level, offset or sensor may tell more."
+                }
+                _ => {
+                    "The list at the end says what was looked for, and how large it would have to be \
+                     to be seen in this record."
+                }
+            };
+            page.element("p", "note", note);
+            return;
+        }
+        for (name, before) in &finding.before.test {
+            let Some(after) = finding.after.test.get(name) else { continue };
+            let unit =
+                finding.series.outputs.iter().find(|(n, _)| n == name).map_or("", |(_, u)| u);
+            page.element("p", "gain", &format!(
+                "{name}, on data not used before: RMSE {} \u{2192} {} {unit} (fit {:.1} \u{2192} {:.1} %).",
+                number(before.rmse, None), number(after.rmse, None),
+                before.fit_percent, after.fit_percent,
+            ));
+        }
+        let gain = &finding.gain;
+        let [low, high] = gain.interval95;
+        page.element("p", "note", &format!(
+            "{:.1} % of the mean square error above the noise floor is gone (95 % interval {:.1} to {:.1} %); \
+             RMSE over all outputs times {}.",
+            100.0 * gain.error_removed, 100.0 * low, 100.0 * high, number(gain.test_rmse_ratio, None),
+        ));
+        if let Some(promise) = finding.false_discovery.as_ref().filter(|f| f.confirmed > 0) {
+            page.element("p", "note", &format!(
+                "Tested on data that neither fitted nor chose it: {} of {} causes in the machine confirmed, \
+                 false discovery rate at most {}.",
+                promise.confirmed, promise.confirmed + promise.not_confirmed.len(),
+                number(promise.rate, None),
+            ));
+        }
+    }
+}
+
+const FOOTER: &str = "<footer>Read from top to bottom: what was found, how it shows, what else was \
+considered, what is left. A value \"a \u{b1} b\" has b as two standard errors. \"Removable\" is the mean \
+square error above the noise floor. A look-alike would remove nearly as much: the record cannot tell \
+it from the cause named; a runner-up would remove clearly less.</footer>";

@@ -1,0 +1,41 @@
+//! Repeats the whole over seeds, starts and hidden effects.
+//!
+//! [`Generate`] makes records whose truth is known. A [`MonteCarlo`] trains one model from
+//! several starts with several seeds; its [`Job`]s can be shared among machines, and what
+//! comes out does not depend on how they were shared. [`NoiseStudy`] tells how far each
+//! start's encoder is from the states at several noise levels. An [`Exam`] hides effects in
+//! machines and marks what the diagnosis makes of their records.
+
+use lacuna_core::{data, effect, evaluate, fault, file, model, system, watch};
+use lacuna_diagnose as diagnose;
+use lacuna_learn::{encoder, train};
+use lacuna_report as report;
+
+mod error;
+mod exam;
+mod figures;
+mod generate;
+mod job;
+mod monte_carlo;
+mod noise_study;
+mod result;
+mod run;
+
+pub use error::StudyError;
+pub use exam::{Case, Concealed, Exam, ExamResult, Hit, Kind, Machine, Marks, Tally};
+pub use figures::StudyReport;
+pub use generate::{Generate, Generated, Truth};
+pub use job::{Done, Frame, Job};
+pub use monte_carlo::{MonteCarlo, Start};
+pub use noise_study::{Level, NoiseStudy};
+pub use result::{Quartiles, StudyResult, Summary};
+
+pub use monte_carlo::Inputs;
+
+/// What shard `i` of `n`, counted from 1, does of some work: every n-th piece.
+fn shard<T>(work: Vec<T>, i: usize, n: usize) -> Result<Vec<T>, StudyError> {
+    if i == 0 || i > n {
+        return Err(StudyError::setting("shard", format!("{i}/{n}"), "1/n up to n/n"));
+    }
+    Ok(work.into_iter().skip(i - 1).step_by(n).collect())
+}

@@ -1,0 +1,15 @@
+//! Effects hidden in data that have to be found, and what a diagnosis says beside its causes.
+//!
+//! One binary for all, because linking costs more than compiling.
+
+mod data_faults;
+mod exam;
+mod hard_plants;
+mod hidden_effect;
+mod network;
+mod other_plants;
+mod plan;
+mod report;
+mod said;
+mod shapeless;
+mod written_effect;
