@@ -15,6 +15,7 @@ impl Effect for Bias {
         EffectCard::law(vec![Knob::coefficient("value", self.value, UnitRule::Channel)])
             .needs(Needs::Nothing)
             .places(Places { channel: true, input: true, output: true, ..Places::default() })
+            .of_an_instrument()
             .rank(1)
     }
 

@@ -26,6 +26,8 @@ impl Effect for CoulombFriction {
         ])
         .needs(Needs::Velocity)
         .sign(SignRule::Opposing { polarity: 1 })
+        .friction()
+        .smoothing_width("width")
         .rank(2)
     }
 

@@ -23,7 +23,9 @@ impl Effect for DeadZone {
             Knob::coefficient("slope", self.slope, UnitRule::ChannelPerCoordinate(1)),
             Knob::shape("width", self.width, UnitRule::Coordinate).neutral_at(0.0),
         ])
-        .places(Places { channel: true, input: true, output: true, ..Places::default() });
+        .places(Places { channel: true, input: true, output: true, ..Places::default() })
+        .piecewise_linear()
+        .flat_inside("width");
         card.own_path = &[("slope", 1.0)];
         card
     }

@@ -16,6 +16,7 @@ impl Effect for Drag {
         EffectCard::law(vec![Knob::coefficient("coefficient", self.coefficient, unit)])
             .needs(Needs::Velocity)
             .sign(SignRule::Opposing { polarity: 1 })
+            .friction()
             .rank(2)
     }
 

@@ -31,6 +31,7 @@ impl Effect for ExtraMode {
         .places(Places { channel: true, beside: true, ..Places::default() })
         .states(2)
         .sign(SignRule::Along)
+        .resonance("frequency")
         .rank(4)
     }
 

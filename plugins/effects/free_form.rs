@@ -19,7 +19,7 @@ impl Effect for FreeForm {
         };
         let mut card = EffectCard::law(self.values.iter().enumerate().map(knob).collect());
         card.places = Places::default();
-        card.rank(9)
+        card.shape_of(ShapeOf::FreeCurve).rank(9)
     }
 
     fn title(&self, _: &Named) -> String {

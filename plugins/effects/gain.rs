@@ -14,6 +14,8 @@ impl Effect for Gain {
     fn card(&self) -> EffectCard {
         EffectCard::law(vec![Knob::coefficient("gain", self.gain, UnitRule::None)])
             .places(Places { input: true, output: true, ..Places::default() })
+            .of_an_instrument()
+            .stated_as(Size::Factor("gain"))
             .rank(1)
     }
 

@@ -23,6 +23,8 @@ impl Effect for Harmonic {
         ])
         .needs(Needs::AngleOrTime)
         .places(Places { channel: true, input: true, output: true, ..Places::default() })
+        .periodic_in_time()
+        .stated_as(Size::Wave { order: "n", sine: "a", cosine: "b" })
         .rank(4)
     }
 

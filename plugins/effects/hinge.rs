@@ -31,6 +31,7 @@ impl Effect for Hinge {
             side,
         ])
         .places(Places { channel: true, input: true, output: true, ..Places::default() })
+        .piecewise_linear()
         .rank(4)
     }
 

@@ -18,6 +18,7 @@ impl Effect for Lag {
             .by(Mechanism::Lag)
             .places(Places { input: true, output: true, ..Places::default() })
             .sign(SignRule::Positive)
+            .of_an_instrument()
             .rank(2)
     }
 

@@ -144,7 +144,11 @@ impl Effect for Network {
         let made_for = (0..self.scales.len())
             .map(|i| (named(&self.coordinates, i), named(&self.units, i)))
             .collect();
-        EffectCard::law(knobs).places(Places::default()).rank(10).made_for(made_for)
+        EffectCard::law(knobs)
+            .places(Places::default())
+            .shape_of(ShapeOf::Learned)
+            .rank(10)
+            .made_for(made_for)
     }
 
     fn title(&self, _: &Named) -> String {

@@ -22,6 +22,10 @@ impl Effect for Linear {
         power(named, "Linear damping", "A linear law", "A linear law")
     }
 
+    fn senses(&self, named: &Named) -> Option<[&'static str; 2]> {
+        damping(named)
+    }
+
     #[inline(always)]
     fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
         let &[c] = at.knobs();
@@ -82,6 +86,10 @@ impl Effect for Cubic {
         power(named, "Cubic damping", "A cubic law", "A cubic curve")
     }
 
+    fn senses(&self, named: &Named) -> Option<[&'static str; 2]> {
+        damping(named)
+    }
+
     #[inline(always)]
     fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
         let &[c] = at.knobs();
@@ -112,6 +120,10 @@ impl Effect for Quintic {
         power(named, "Fifth-power damping", "A fifth-power law", "A fifth-power curve")
     }
 
+    fn senses(&self, named: &Named) -> Option<[&'static str; 2]> {
+        damping(named)
+    }
+
     #[inline(always)]
     fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
         let &[c] = at.knobs();
@@ -121,6 +133,12 @@ impl Effect for Quintic {
 }
 
 lacuna::register!(CandidateEffect for Quintic, "quintic", "c z^5 of a coordinate");
+
+/// What more and less of an odd power of a velocity is.
+fn damping(named: &Named) -> Option<[&'static str; 2]> {
+    let damps = named.is_velocity() && !named.own_path;
+    damps.then_some(["more damping", "less damping"])
+}
 
 /// What a power law is called.
 fn power(named: &Named, damping: &str, law: &str, curve: &str) -> String {

@@ -26,6 +26,7 @@ impl Effect for Saturation {
             limit("high", self.high, f64::INFINITY),
         ])
         .places(Places { input: true, output: true, ..Places::default() })
+        .limits_output()
         .rank(2)
     }
 

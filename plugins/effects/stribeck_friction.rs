@@ -32,6 +32,8 @@ impl Effect for StribeckFriction {
         ])
         .needs(Needs::Velocity)
         .sign(SignRule::Opposing { polarity: 1 })
+        .friction()
+        .smoothing_width("width")
         .rank(4)
     }
 

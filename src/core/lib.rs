@@ -27,7 +27,7 @@ pub mod __private {
 pub mod prelude {
     pub use crate::effect::{
         CandidateEffect, Effect, EffectCard, Felt, Knob, Mechanism, Named, Needs, Places, Role,
-        Search, SignRule, UnitRule, View,
+        Search, ShapeOf, SignRule, Size, UnitRule, View,
     };
     pub use crate::model::{At, Fault, Physics, Signals, StateSpaceModel};
     pub use crate::real::Real;

@@ -21,8 +21,7 @@ const RESTS: f64 = 1e-3;
 const AT_REST: f64 = 0.5;
 /// Share of the time that is all of it.
 const ALWAYS: f64 = 0.9;
-/// Laws that are straight lines where their bend is not met,
-const BENT: [&str; 2] = ["dead_zone", "hinge"];
+/// A law of straight pieces is a line where its bends are not met
 /// by all samples but this share at either end of the range,
 const OUTERMOST: f64 = 0.05;
 /// to this share of their largest value.
@@ -81,7 +80,9 @@ impl Teller<'_, '_> {
     fn is_straight(&self, model: &Model, index: usize) -> bool {
         let Added { cause, knobs } = &model.added[index];
         let z = along(self.problem, self.nominal, model, cause, Grain::Fine);
-        let Some(mut z) = z.filter(|_| BENT.contains(&cause.effect)) else { return false };
+        let Some(mut z) = z.filter(|_| cause.card.properties.piecewise_linear) else {
+            return false;
+        };
         z.sort_by(f64::total_cmp);
         let outer = (OUTERMOST * z.len() as f64) as usize;
         let z = &z[outer..z.len() - outer];

@@ -1,6 +1,6 @@
 //! One supposed cause: an effect at a place, with what is free in it.
 
-use crate::effect::{CandidateEffect, EffectCard, Named, Role};
+use crate::effect::{CandidateEffect, EffectCard, Named, Role, ShapeOf};
 use crate::system::{AlsoInto, Placed, Route};
 
 /// Natural logarithms of the number of causes to choose from, and of the values that a record
@@ -65,6 +65,8 @@ pub(crate) struct Candidate {
     pub probe: f64,
     /// Rate at which w changes the coordinate: how stiff a steep friction law is.
     pub stiffness: f64,
+    /// Rate at which the channel changes the coordinate, D; 0 where it is not known.
+    pub push: f64,
     pub named: Named,
     /// Units of into and of.
     pub units: (String, String),
@@ -95,7 +97,7 @@ impl Candidate {
 
     /// Whether it is an instrument's limit that was read off the record: nothing is free in it.
     pub fn is_known_limit(&self) -> bool {
-        self.effect == "saturation" && self.unknowns() == 0
+        self.card.properties.limits_output && self.unknowns() == 0
     }
 
     /// How many numbers it has free.
@@ -124,12 +126,12 @@ impl Candidate {
 
     /// Whether its shape is not one of the library: a free curve or a learned law.
     pub fn is_drawn(&self) -> bool {
-        self.effect == super::sketch::NAME || self.is_learned()
+        self.card.properties.shape != ShapeOf::Law
     }
 
     /// Whether it is a learned law.
     pub fn is_learned(&self) -> bool {
-        self.effect == super::surface::NAME
+        self.card.properties.shape == ShapeOf::Learned
     }
 
     /// Everything that it depends on, the first coordinate first.
@@ -166,7 +168,7 @@ impl Candidate {
         {
             clipped[first] = 0.0;
         }
-        let width = self.card.knobs.iter().position(|knob| knob.name == "width");
+        let width = self.card.position(self.card.properties.smoothing_width);
         if let (Some(width), true) = (width, self.stiffness > 0.0) {
             let level: f64 = self.linear.iter().map(|&i| clipped[i].abs()).sum();
             clipped[width] = clipped[width].max(0.5 * level * self.stiffness * step);

@@ -49,12 +49,10 @@ impl Problem<'_> {
         let blunt = |model: &&Model| {
             model.added.iter().any(|added| {
                 let mut steep = added.knobs.clone();
-                let knobs = added.cause.card.knobs.iter();
-                knobs.zip(&mut steep).for_each(|(knob, value)| {
-                    if knob.name == "width" {
-                        *value *= 0.9;
-                    }
-                });
+                let card = &added.cause.card;
+                if let Some(width) = card.position(card.properties.smoothing_width) {
+                    steep[width] *= 0.9;
+                }
                 let as_fine = added.cause.clipped(&steep, fine);
                 as_fine != added.cause.clipped(&steep, coarse)
             })

@@ -176,7 +176,7 @@ impl Builder<'_, '_> {
         };
         let (target_signal, target_origin) = &base.targets.entries[spot.target];
         let source_signal = &base.sources.entries[source].0;
-        let simple = matches!(name, "bias" | "gain" | "delay" | "lag");
+        let simple = card.properties.of_an_instrument;
         let preference = self.preference(spot.target);
         for (_, starts) in patterns {
             let role = |i: &usize| card.knobs[*i].role;
@@ -222,6 +222,7 @@ impl Builder<'_, '_> {
                 thresholds: search.thresholds,
                 sign,
                 probe,
+                push,
                 stiffness: if card.needs == Needs::Velocity { push.abs() } else { 0.0 },
                 named: Named { quantity: self.quantity(source), own_path: spot.own_path },
                 units: (target_signal.unit.clone(), source_signal.unit.clone()),
@@ -251,8 +252,7 @@ impl Builder<'_, '_> {
         let fallback = if view.rms > 0.0 { view.rms } else { 1.0 };
         if card.states > 0 {
             // an oscillator shaken at its own frequency
-            let rate =
-                card.knobs.iter().position(|k| k.name == "frequency").map_or(1.0, |i| start[i]);
+            let rate = card.position(card.properties.resonance).map_or(1.0, |i| start[i]);
             return fallback * rate;
         }
         let mut knobs = start.to_vec();

@@ -52,7 +52,7 @@ fn known_limits(
         return None;
     }
     let found = candidates.iter().find(|c| {
-        c.effect == "saturation" && c.into == output && c.of.as_deref() == Some(output)
+        c.card.properties.limits_output && c.into == output && c.of.as_deref() == Some(output)
     })?;
     let mut cause = Candidate::clone(found);
     // read off the record, so there is nothing to refine

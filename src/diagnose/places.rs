@@ -54,6 +54,7 @@ impl Builder<'_, '_> {
                 sign: 0.0,
                 probe: if changes { 0.01 * scale } else { 0.02 * scale / duration },
                 stiffness: 0.0,
+                push: 0.0,
                 named: Named::default(),
                 units: (parameter.unit.clone(), "s".into()),
                 twins: vec![],
@@ -195,7 +196,14 @@ impl Builder<'_, '_> {
                 }
                 _ => (0.0, None),
             };
+            let first = self.found.len();
             self.push(name, shape, card, spot, push, rate, twins(Some(source)));
+            // a law of either sign that has words for both needs to know which is which
+            let named = Named { quantity: self.quantity(source), own_path: false };
+            if push == 0.0 && shape.senses(&named).is_some() {
+                let push = sign_of(source).unwrap_or(0.0);
+                self.found[first..].iter_mut().for_each(|cause| cause.push = push);
+            }
             self.passed_on(name, shape, card, target, source);
         }
     }

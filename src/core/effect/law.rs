@@ -103,6 +103,15 @@ pub trait Effect:
     /// The cause in words, at the start of a sentence: "Dry friction".
     fn title(&self, named: &Named) -> String;
 
+    /// What a sentence calls more of it and less of it, where its first coefficient may have either
+    /// sign and the coordinate is moved by the channel: `["more damping", "less damping"]`. The first
+    /// opposes the coordinate, the second goes along with it. Without such words the number has a
+    /// sign.
+    fn senses(&self, named: &Named) -> Option<[&'static str; 2]> {
+        let _ = named;
+        None
+    }
+
     /// w, and the rates of change of the own states.
     fn law<R: Real>(&self, at: &Felt<R>, rates: &mut [R]) -> R;
 
@@ -150,6 +159,11 @@ pub trait Shape: Debug + Send + Sync {
     fn card(&self) -> EffectCard;
     /// The cause in words.
     fn title(&self, named: &Named) -> String;
+    /// What more of it and less of it is called, see [`Effect::senses`]; no words by default.
+    fn senses(&self, named: &Named) -> Option<[&'static str; 2]> {
+        let _ = named;
+        None
+    }
     /// Where a search starts.
     fn search(&self, view: &View) -> Search;
     /// Answers one block.
@@ -181,6 +195,10 @@ impl<E: Effect + CandidateEffect> Shape for E {
 
     fn title(&self, named: &Named) -> String {
         Effect::title(self, named)
+    }
+
+    fn senses(&self, named: &Named) -> Option<[&'static str; 2]> {
+        Effect::senses(self, named)
     }
 
     fn search(&self, view: &View) -> Search {

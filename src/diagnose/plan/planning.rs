@@ -31,7 +31,7 @@ impl Planning<'_, '_> {
         let mut causes: Vec<Arc<Candidate>> = vec![];
         for cause in library(problem, nominal, start, vec![], allowed) {
             // a curve of any shape is alike to every shape
-            if cause.effect != "free_form" && !causes.iter().any(|c| c.same_cause(&cause)) {
+            if !cause.is_drawn() && !causes.iter().any(|c| c.same_cause(&cause)) {
                 causes.push(cause);
             }
         }
