@@ -3,16 +3,16 @@
 use serde_json::json;
 
 use super::args::Check;
+use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use super::look::Look;
 use lacuna::data::Record;
 use lacuna::diagnose::{Diagnosis, number};
 
 /// Exit status where the data reject the model.
 const REJECTED: u8 = 3;
 
-pub fn run(args: &Check, look: &Look) -> Result<u8, Failure> {
+pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;
     let records: Vec<Record> = args
         .on

@@ -1,10 +1,10 @@
 //! `lacuna demo`: the main job on a record that the program brings along.
 
 use super::args::Demo;
+use super::console::Console;
 use super::diagnose::look_for;
 use super::failure::Failure;
 use super::input;
-use super::look::Look;
 use lacuna::data::{Record, Table};
 use lacuna::diagnose::Diagnosis;
 use lacuna::file::{Format, parse};
@@ -15,7 +15,7 @@ const MODEL: &str = include_str!("demo/model.toml");
 const EST: &[u8] = include_bytes!("demo/est.csv.gz");
 const TEST: &[u8] = include_bytes!("demo/test.csv.gz");
 
-pub fn run(args: &Demo, look: &Look) -> Result<u8, Failure> {
+pub fn run(args: &Demo, look: &Console) -> Result<u8, Failure> {
     let system = parse(MODEL, "demo/model.toml", Format::Toml)?;
     let want = input::want(&system)?;
     let read = |bytes: &[u8], name: &str| -> Result<Record, Failure> {

@@ -4,16 +4,16 @@ use std::fs;
 use std::path::Path;
 
 use super::args::Diagnose as Args;
+use super::console::{Console, print};
 use super::failure::Failure;
 use super::input;
-use super::look::{Look, print};
 use lacuna::data::Record;
 pub use lacuna::diagnose::{Diagnosis, Finding, number};
 use lacuna::file::save_with;
 use lacuna::report::Report;
 use lacuna::system::System;
 
-pub fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
+pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;
     let read = |path: &std::path::PathBuf| input::record(path, &want, look);
     let records: Vec<Record> = args.on.data.iter().map(read).collect::<Result<_, _>>()?;
@@ -36,7 +36,7 @@ pub fn look_for(
     test: Option<&Record>,
     title: &str,
     out: &Path,
-    look: &Look,
+    look: &Console,
 ) -> Result<u8, Failure> {
     // a folder that cannot be made is better known before the work than after it
     fs::create_dir_all(out).map_err(|error| cannot_write(out, &error))?;
@@ -61,7 +61,7 @@ pub fn look_for(
     Ok(0)
 }
 
-fn tell(finding: &Finding, units: &[(String, String)], out: &Path, look: &Look) {
+fn tell(finding: &Finding, units: &[(String, String)], out: &Path, look: &Console) {
     if finding.interrupted {
         look.result("Interrupted: this is what was known.");
     }

@@ -3,15 +3,15 @@
 use serde_json::json;
 
 use super::args::Estimate as Args;
+use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use super::look::Look;
 use lacuna::data::Record;
 use lacuna::diagnose::number;
 use lacuna::estimate::{Estimated, estimate_with};
 use lacuna::file::save;
 
-pub fn run(args: &Args, seed: u64, look: &Look) -> Result<u8, Failure> {
+pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     let Some(model) = &args.model else { return super::linear::run(args, look) };
     let (system, want) = input::model(model)?;
     input::writable(&args.out)?;

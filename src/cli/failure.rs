@@ -4,7 +4,7 @@ use std::process::ExitCode;
 
 use serde_json::json;
 
-use super::look::{Look, print};
+use super::console::{Console, print};
 use lacuna::data::DataError;
 use lacuna::diagnose::DiagnoseError;
 use lacuna::estimate::LinearError;
@@ -62,7 +62,7 @@ impl Failure {
     }
 
     /// Shows it and gives the exit status.
-    pub fn show(self, look: &Look) -> ExitCode {
+    pub fn show(self, look: &Console) -> ExitCode {
         look.clear();
         if look.json {
             document(self.kind, &self.message, &self.place, self.hint.as_deref());

@@ -8,9 +8,9 @@ use std::path::{Path, PathBuf};
 use serde_json::{Map, Value, json};
 
 use super::args::Fit as Args;
+use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use super::look::Look;
 use lacuna::data::Record;
 use lacuna::diagnose::number;
 use lacuna::evaluate::{Init, Metrics, Simulation};
@@ -24,7 +24,7 @@ use lacuna::watch::Watch;
 /// Share of the data that is kept for validation where no record is given for it.
 const VALIDATION: f64 = 0.2;
 
-pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Look) -> Result<u8, Failure> {
+pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Result<u8, Failure> {
     let document = Document::load(&args.config)?;
     let mut recipe: Recipe = document.read()?;
     let (system, want) = input::model(&args.on.model)?;
@@ -71,7 +71,7 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Look) -> Resul
 
 /// Tells how far the training is, and ends it on Ctrl-C.
 struct Progress<'a> {
-    look: &'a Look,
+    look: &'a Console,
     epochs: usize,
     last: String,
     at: usize,
@@ -123,7 +123,7 @@ impl Done<'_> {
         started: &str,
         shown: Option<&Record>,
         is_test: bool,
-        look: &Look,
+        look: &Console,
     ) -> Result<u8, Failure> {
         let (out, fit) = (&self.args.out, self.fit);
         let model = AugmentedModel::new(fit.model.model.clone()).into_system()?;
@@ -181,7 +181,7 @@ impl Done<'_> {
         each.collect()
     }
 
-    fn tell(&self, scores: &[[Option<Metrics>; 2]], is_test: bool, look: &Look) {
+    fn tell(&self, scores: &[[Option<Metrics>; 2]], is_test: bool, look: &Console) {
         let (fit, out) = (self.fit, &self.args.out);
         let interrupted = fit.ended == Ended::Asked;
         if interrupted {

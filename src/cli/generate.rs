@@ -4,13 +4,13 @@ use std::fs;
 use std::path::Path;
 
 use super::args::Generate as Args;
+use super::console::Console;
 use super::failure::Failure;
-use super::look::Look;
 use lacuna::diagnose::number;
 use lacuna::file::{Document, load};
 use lacuna::study::Generate;
 
-pub fn run(args: &Args, seed: u64, look: &Look) -> Result<u8, Failure> {
+pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     let how: Generate = Document::load(&args.config)?.read()?;
     let beside = args.config.parent().unwrap_or(Path::new("")).join(&how.model);
     let system = load(&beside)?;

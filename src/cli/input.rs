@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use super::console::Console;
 use super::failure::Failure;
-use super::look::Look;
 use lacuna::data::{Record, Remark, Step, Table, Want};
 use lacuna::evaluate::Init;
 use lacuna::file::load;
@@ -37,14 +37,14 @@ pub fn want(system: &System) -> Result<Want, Failure> {
 }
 
 /// A record; what was noticed in it is said.
-pub fn record(path: &Path, want: &Want, look: &Look) -> Result<Record, Failure> {
+pub fn record(path: &Path, want: &Want, look: &Console) -> Result<Record, Failure> {
     let (record, remarks) = Table::open(path)?.record_for(want)?;
     tell(path, &remarks, look);
     Ok(record)
 }
 
 /// A record that need not hold outputs. A file with columns left over lacks none on purpose.
-pub fn record_to_simulate(path: &Path, want: &Want, look: &Look) -> Result<Record, Failure> {
+pub fn record_to_simulate(path: &Path, want: &Want, look: &Console) -> Result<Record, Failure> {
     let table = Table::open(path)?;
     let (record, remarks) = table.record_for(&Want { outputs_required: false, ..want.clone() })?;
     let absent = remarks.iter().any(|r| matches!(r, Remark::AbsentOutputs { .. }));
@@ -57,7 +57,7 @@ pub fn record_to_simulate(path: &Path, want: &Want, look: &Look) -> Result<Recor
 }
 
 /// Says what was noticed in a record.
-pub fn tell(path: &Path, remarks: &[Remark], look: &Look) {
+pub fn tell(path: &Path, remarks: &[Remark], look: &Console) {
     for remark in remarks {
         look.say(&format!("{}: {remark}", path.display()));
     }

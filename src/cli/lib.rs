@@ -2,11 +2,12 @@
 //!
 //! ```text
 //! arguments -- args --> a command -- input --> System, Record -- the library --> Outcome
-//! Outcome -- look --> text on stderr, one JSON document on stdout, files
+//! Outcome -- console --> text on stderr, one JSON document on stdout, files
 //! ```
 
 mod args;
 mod check;
+mod console;
 mod demo;
 mod diagnose;
 mod estimate;
@@ -16,7 +17,6 @@ mod generate;
 mod input;
 mod linear;
 mod list;
-mod look;
 mod plan;
 mod simulate;
 mod study;
@@ -26,8 +26,8 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Args, Command};
+use console::Console;
 use failure::Failure;
-use look::Look;
 
 /// Runs the program with the process's arguments.
 pub fn main() -> ExitCode {
@@ -35,7 +35,7 @@ pub fn main() -> ExitCode {
         Ok(args) => args,
         Err(error) => return failure::call(&error),
     };
-    let look = Look::new(&args.common);
+    let look = Console::new(&args.common);
     let done = threads(args.common.threads).and_then(|()| run(&args, &look));
     match done {
         Ok(status) => ExitCode::from(status),
@@ -44,7 +44,7 @@ pub fn main() -> ExitCode {
 }
 
 /// Runs one command; its exit status.
-fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
+fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     let seed = args.common.seed;
     match &args.command {
         Command::Demo(demo) => demo::run(demo, look),

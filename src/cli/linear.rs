@@ -5,16 +5,16 @@ use std::path::Path;
 use serde_json::json;
 
 use super::args::Estimate as Args;
+use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use super::look::Look;
 use lacuna::data::{DataError, Record, Step, Table, Want};
 use lacuna::diagnose::number;
 use lacuna::estimate::{LinearEstimate, LinearParameter, Mode, linear_with};
 use lacuna::fault::Place;
 use lacuna::file::save;
 
-pub fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
+pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     input::writable(&args.out)?;
     let order = args.lti.flatten();
     let read = |path: &std::path::PathBuf| record(path, args, order, look);
@@ -44,7 +44,7 @@ pub fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
     Ok(0)
 }
 
-fn tell(found: &LinearEstimate, look: &Look) {
+fn tell(found: &LinearEstimate, look: &Console) {
     let values: Vec<String> =
         found.singular_values.iter().take(16).map(|value| number(*value, None)).collect();
     look.detail(&format!("singular values: {}", values.join(", ")));
@@ -83,7 +83,12 @@ fn line(p: &LinearParameter) -> String {
 }
 
 /// A record with the columns that were asked for, or those called `u` and `y`.
-fn record(path: &Path, args: &Args, order: Option<usize>, look: &Look) -> Result<Record, Failure> {
+fn record(
+    path: &Path,
+    args: &Args,
+    order: Option<usize>,
+    look: &Console,
+) -> Result<Record, Failure> {
     let table = Table::open(path)?;
     let group = |given: &[String], letter: char, role: &'static str| match given {
         [] => lettered(&table, letter, role),

@@ -4,8 +4,8 @@ use clap::CommandFactory;
 use serde_json::{Value, json};
 
 use super::args::Args;
+use super::console::{Console, print};
 use super::failure::Failure;
-use super::look::{Look, print};
 use lacuna::effect::{Knob, Needs};
 use lacuna::file::{Format, parse};
 use lacuna::model::{Signal, Signals};
@@ -25,7 +25,7 @@ fn named(signals: &[Signal]) -> Value {
     signals.iter().map(|s| json!({ "name": s.name, "unit": s.unit })).collect()
 }
 
-pub fn models(look: &Look) -> Result<u8, Failure> {
+pub fn models(look: &Console) -> Result<u8, Failure> {
     let (mut all, mut text) = (vec![], String::new());
     for card in register::models() {
         let PlugIn::Model { example } = card.plug_in else { continue };
@@ -72,7 +72,7 @@ pub fn models(look: &Look) -> Result<u8, Failure> {
     Ok(0)
 }
 
-pub fn effects(look: &Look) -> Result<u8, Failure> {
+pub fn effects(look: &Console) -> Result<u8, Failure> {
     let (mut all, mut text) = (vec![], String::new());
     for (card, effect) in register::effects() {
         let own = effect.card();
@@ -108,7 +108,7 @@ pub fn effects(look: &Look) -> Result<u8, Failure> {
     Ok(0)
 }
 
-pub fn completions(shell: clap_complete::Shell, look: &Look) -> Result<u8, Failure> {
+pub fn completions(shell: clap_complete::Shell, look: &Console) -> Result<u8, Failure> {
     let mut script = vec![];
     clap_complete::generate(shell, &mut Args::command(), "lacuna", &mut script);
     let script = String::from_utf8_lossy(&script);
@@ -117,6 +117,6 @@ pub fn completions(shell: clap_complete::Shell, look: &Look) -> Result<u8, Failu
 }
 
 /// A list is what was asked for: it goes to stdout in either form.
-fn show(look: &Look, document: &Value, text: &str) {
+fn show(look: &Console, document: &Value, text: &str) {
     if look.json { look.document(document) } else { print(text) }
 }

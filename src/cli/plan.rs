@@ -1,13 +1,13 @@
 //! `lacuna plan`.
 
 use super::args::Plan as Args;
+use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use super::look::Look;
 use lacuna::data::Record;
 use lacuna::diagnose::Planner;
 
-pub fn run(args: &Args, look: &Look) -> Result<u8, Failure> {
+pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;
     let read = |path: &std::path::PathBuf| input::record(path, &want, look);
     let records: Vec<Record> = args.on.data.iter().map(read).collect::<Result<_, _>>()?;

@@ -3,14 +3,14 @@
 use serde_json::{Map, Value, json};
 
 use super::args::Simulate;
+use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use super::look::Look;
 use lacuna::data::Record;
 use lacuna::diagnose::number;
 use lacuna::evaluate::{Metrics, Simulation};
 
-pub fn run(args: &Simulate, look: &Look) -> Result<u8, Failure> {
+pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.model)?;
     let record = input::record_to_simulate(&args.data, &want, look)?;
     let run = Simulation::of(&system, &record, input::init(args.init))?;

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::args::{Study as Args, StudyVerb};
+use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use super::look::Look;
 use lacuna::data::Record;
 use lacuna::diagnose::number;
 use lacuna::file::Document;
@@ -13,7 +13,7 @@ use lacuna::study::{ExamResult, Inputs, MonteCarlo, StudyResult};
 
 mod exam;
 
-pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Look) -> Result<u8, Failure> {
+pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Result<u8, Failure> {
     if let Some(StudyVerb::Merge(merge)) = &args.verb {
         if merge.folders.iter().any(|folder| ExamResult::lies_in(folder)) {
             return exam::finish(&ExamResult::merge(&merge.folders)?, &merge.out, look);
@@ -70,7 +70,7 @@ fn all_unless(threads: Option<usize>) -> usize {
     threads.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-fn finish(result: &StudyResult, out: &Path, look: &Look) -> Result<u8, Failure> {
+fn finish(result: &StudyResult, out: &Path, look: &Console) -> Result<u8, Failure> {
     result.write(out)?;
     for summary in result.summaries() {
         for q in summary.test.iter().flatten() {

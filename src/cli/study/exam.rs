@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use super::{Args, all_unless};
+use crate::console::Console;
 use crate::failure::Failure;
 use crate::input;
-use crate::look::Look;
 use lacuna::file::Document;
 use lacuna::study::{Exam, ExamResult};
 use lacuna::system::System;
@@ -16,7 +16,7 @@ pub fn run(
     args: &Args,
     seed: u64,
     threads: Option<usize>,
-    look: &Look,
+    look: &Console,
 ) -> Result<u8, Failure> {
     let exam: Exam = document.read()?;
     let (i, n) = args.shard.unwrap_or((1, 1));
@@ -47,7 +47,7 @@ pub fn run(
     finish(&ExamResult::merge(std::slice::from_ref(&args.out))?, &args.out, look)
 }
 
-pub fn finish(result: &ExamResult, out: &Path, look: &Look) -> Result<u8, Failure> {
+pub fn finish(result: &ExamResult, out: &Path, look: &Console) -> Result<u8, Failure> {
     result.write(out)?;
     let percent = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{:.0} %", 100.0 * v));
     for t in result.tallies() {

@@ -14,7 +14,7 @@ use lacuna::diagnose::Watch;
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
 /// How to speak.
-pub struct Look {
+pub struct Console {
     /// One JSON document on stdout.
     pub json: bool,
     quiet: bool,
@@ -40,7 +40,7 @@ pub fn print(text: &str) {
     }
 }
 
-impl Look {
+impl Console {
     pub fn new(common: &Common) -> Self {
         let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
         let lively = std::io::stderr().is_terminal() && !set("NO_COLOR");
@@ -111,7 +111,7 @@ impl Look {
     }
 }
 
-impl Watch for Look {
+impl Watch for Console {
     fn tell(&self, done: f64, doing: &str) {
         if self.verbose
             && let Ok(mut last) = self.last.lock()
