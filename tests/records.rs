@@ -1,7 +1,7 @@
 //! Section 1 of the contract, line by line: what a record may look like, what is said
 //! about it, and how it is refused.
 
-use lacuna::data::{DataError, Record, Remark, Step, Table, Want, read_for};
+use lacuna::data::{DataError, Reading, Record, Remark, Step, Table, Want, read_for};
 use lacuna::fault::{Explain, Kind, Place, told};
 use proptest::prelude::*;
 use std::f64::consts::PI;

@@ -1,11 +1,13 @@
 //! What can be typed.
 
+mod columns;
 mod estimate;
 
 use std::path::PathBuf;
 
 use clap::{Args as Arguments, Parser, Subcommand};
 
+pub use columns::Columns;
 pub use estimate::Estimate;
 
 /// Shows what a model's simulation gets wrong, names the cause, extends the model and
@@ -135,9 +137,11 @@ pub struct ModelAndData {
     /// Model file (TOML or JSON)
     #[arg(long, value_name = "FILE")]
     pub model: PathBuf,
-    /// Record (CSV); may be repeated for several records of one machine
+    /// Record (CSV, .npz, .mat..; - is stdin); may be repeated for several records of one machine
     #[arg(long, value_name = "FILE", required = true)]
     pub data: Vec<PathBuf>,
+    #[command(flatten)]
+    pub columns: Columns,
 }
 
 #[derive(Debug, Clone, Arguments)]
@@ -180,10 +184,12 @@ pub struct Simulate {
     /// Model file (TOML or JSON)
     #[arg(long, value_name = "FILE")]
     pub model: PathBuf,
-    /// Record (CSV)
+    /// Record (CSV, .npz, .mat..; - is stdin)
     #[arg(long, value_name = "FILE")]
     pub data: PathBuf,
-    /// CSV file for the simulated outputs, `<output>_hat`
+    #[command(flatten)]
+    pub columns: Columns,
+    /// CSV file for the simulated outputs, `<output>_hat`; - is stdout
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
     /// Samples from which the initial state is estimated; the figures leave them out; 0 holds

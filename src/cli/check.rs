@@ -6,7 +6,6 @@ use super::args::Check;
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use lacuna::data::Record;
 use lacuna::diagnose::{Diagnosis, number};
 
 /// Exit status where the data reject the model.
@@ -14,12 +13,7 @@ const REJECTED: u8 = 3;
 
 pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;
-    let records: Vec<Record> = args
-        .on
-        .data
-        .iter()
-        .map(|path| input::record(path, &want, look))
-        .collect::<Result<_, _>>()?;
+    let records = input::records(&args.on.data, &want, &args.on.columns, look)?;
     look.hear_interrupts()?;
     let checked = Diagnosis::of(&system).max_causes(1).check(&records, look)?;
     look.clear();

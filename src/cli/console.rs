@@ -1,4 +1,8 @@
 //! What the terminal shows: text, a bar, and how Ctrl-C is heard.
+//!
+//! Results go to stdout; what was noticed, progress and errors go to stderr. Work that takes
+//! longer than ten seconds says where its time goes: on a terminal in the bar, else in a line
+//! every ten seconds, and at the end by the three steps that took longest.
 
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
@@ -13,6 +17,9 @@ use lacuna::diagnose::Watch;
 
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
+/// Work that takes longer says where its time goes.
+const LONG: Duration = Duration::from_secs(10);
+
 /// How to speak.
 pub struct Console {
     /// One JSON document on stdout.
@@ -20,11 +27,36 @@ pub struct Console {
     quiet: bool,
     /// Every step is to be told in a line of its own.
     verbose: bool,
-    last: Mutex<String>,
+    course: Mutex<Course>,
     /// stderr is a terminal that takes colour and bars.
     lively: bool,
     bar: ProgressBar,
     started: Instant,
+}
+
+/// How far the work is, and what took how long.
+#[derive(Default)]
+struct Course {
+    done: f64,
+    doing: String,
+    since: Option<Instant>,
+    spent: Vec<(String, Duration)>,
+    /// When it was last told.
+    told: Duration,
+}
+
+impl Course {
+    /// The time up to now belongs to what is being done.
+    fn count(&mut self, now: Instant) {
+        let Some(since) = self.since.replace(now) else { return };
+        // "epoch 3 of 40, loss .." is a step of its own, and of one kind
+        let doing = self.doing.split(|c: char| c.is_ascii_digit() || c == ',').next();
+        let (doing, time) = (doing.unwrap_or_default().trim(), now - since);
+        match self.spent.iter_mut().find(|(name, _)| name == doing) {
+            Some((_, total)) => *total += time,
+            None => self.spent.push((doing.to_string(), time)),
+        }
+    }
 }
 
 /// Writes to stdout; a reader that has gone away ends the program quietly, a full disk does not.
@@ -42,40 +74,40 @@ pub fn print(text: &str) {
 
 impl Console {
     pub fn new(common: &Common) -> Self {
-        let set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-        let lively = std::io::stderr().is_terminal() && !set("NO_COLOR");
+        let lively = std::io::stderr().is_terminal() && !no_color();
         let bar = ProgressBar::with_draw_target(Some(1000), ProgressDrawTarget::hidden());
         let style = ProgressStyle::with_template("{bar:30} {percent:>3} %  {msg}");
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("━━╌"));
         let (json, quiet, verbose) = (common.json, common.quiet, common.verbose);
-        let last = Mutex::default();
-        Self { json, quiet, verbose, last, lively, bar, started: Instant::now() }
+        let course = Mutex::default();
+        Self { json, quiet, verbose, course, lively, bar, started: Instant::now() }
     }
 
-    /// Text for people.
+    /// Text for people, beside the result.
     pub fn say(&self, text: &str) {
         if !self.quiet {
             self.bar.suspend(|| line(text));
         }
     }
 
-    /// The result for people: spoken even when quiet, unless a program listens.
+    /// The result for people: on stdout, also when quiet, unless a program listens.
     pub fn result(&self, text: &str) {
-        if !(self.json || self.quiet) {
-            self.say(text);
+        if !self.json {
+            self.bar.suspend(|| print(&format!("{text}\n")));
         }
     }
 
     /// What only those want to know who ask for more text.
     pub fn detail(&self, text: &str) {
         if self.verbose {
-            self.say(text);
+            self.result(text);
         }
     }
 
     /// The sentence that matters.
     pub fn headline(&self, text: &str) {
-        if self.lively { self.result(&format!("\x1b[1m{text}\x1b[0m")) } else { self.result(text) }
+        let bold = std::io::stdout().is_terminal() && !no_color();
+        if bold { self.result(&format!("\x1b[1m{text}\x1b[0m")) } else { self.result(text) }
     }
 
     pub fn error(&self, text: &str) {
@@ -90,9 +122,25 @@ impl Console {
         }
     }
 
-    /// Takes the bar away.
+    /// Takes the bar away, and says of long work where its time went.
     pub fn clear(&self) {
         self.bar.finish_and_clear();
+        let spent = self.started.elapsed();
+        let Ok(mut course) = self.course.lock() else { return };
+        course.count(Instant::now());
+        course.since = None;
+        let mut parts = std::mem::take(&mut course.spent);
+        if spent < LONG || parts.is_empty() {
+            return;
+        }
+        parts.sort_by_key(|(_, time)| std::cmp::Reverse(*time));
+        let parts: Vec<String> = parts
+            .iter()
+            .take(3)
+            .map(|(doing, time)| format!("{doing} {:.0} s", time.as_secs_f64()))
+            .collect();
+        drop(course);
+        self.say(&format!("{:.0} s, most of it: {}", spent.as_secs_f64(), parts.join(", ")));
     }
 
     /// Lets the first Ctrl-C ask for an end and the second one make it.
@@ -113,15 +161,27 @@ impl Console {
 
 impl Watch for Console {
     fn tell(&self, done: f64, doing: &str) {
-        if self.verbose
-            && let Ok(mut last) = self.last.lock()
-            && *last != doing
-        {
-            *last = doing.to_string();
-            self.say(&format!("{:7.1} s  {doing}", self.started.elapsed().as_secs_f64()));
+        let spent = self.started.elapsed();
+        let Ok(mut course) = self.course.lock() else { return };
+        // several threads tell, and not in order: what was done stays done
+        course.done = course.done.max(done.clamp(0.0, 1.0));
+        let done = course.done;
+        let is_new = course.doing != doing;
+        if is_new {
+            course.count(Instant::now());
+            course.doing = doing.to_string();
+        }
+        let due = spent > course.told + LONG;
+        if due || (is_new && self.verbose) {
+            course.told = spent;
+        }
+        drop(course);
+        if is_new && self.verbose {
+            self.say(&format!("{:7.1} s  {doing}", spent.as_secs_f64()));
+        } else if due && !self.lively {
+            self.say(&format!("{:7.1} s  {:3.0} %  {doing}", spent.as_secs_f64(), 100.0 * done));
         }
         self.bar.set_position((1000.0 * done) as u64);
-        let spent = self.started.elapsed();
         // an estimate from a few per cent is a guess, and is not shown
         let left = (done > 0.05 && done < 1.0 && spent > Duration::from_secs(1))
             .then(|| spent.mul_f64((1.0 - done) / done));
@@ -134,6 +194,10 @@ impl Watch for Console {
     fn stopped(&self) -> bool {
         STOPPED.load(Ordering::Relaxed)
     }
+}
+
+fn no_color() -> bool {
+    std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
 /// A line on stderr, where there is one.

@@ -15,9 +15,14 @@ use lacuna::system::System;
 
 pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;
-    let read = |path: &std::path::PathBuf| input::record(path, &want, look);
-    let records: Vec<Record> = args.on.data.iter().map(read).collect::<Result<_, _>>()?;
-    let test = args.test.as_ref().map(read).transpose()?;
+    let columns = &args.on.columns;
+    let records = input::records(&args.on.data, &want, columns, look)?;
+    if columns.repair {
+        fs::create_dir_all(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
+        input::keep_repaired(&records, columns, &args.out, look)?;
+    }
+    let test = args.test.as_ref();
+    let test = test.map(|path| input::record(path, &want, columns, look)).transpose()?;
     let diagnosis = Diagnosis::of(&system)
         .only(&args.only)
         .without(&args.without)

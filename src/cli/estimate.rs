@@ -6,7 +6,6 @@ use super::args::Estimate as Args;
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use lacuna::data::Record;
 use lacuna::diagnose::number;
 use lacuna::estimate::{Estimated, estimate_with};
 use lacuna::file::save;
@@ -15,8 +14,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     let Some(model) = &args.model else { return super::linear::run(args, look) };
     let (system, want) = input::model(model)?;
     input::writable(&args.out)?;
-    let records: Vec<Record> =
-        args.data.iter().map(|path| input::record(path, &want, look)).collect::<Result<_, _>>()?;
+    let records = input::records(&args.data, &want, &args.columns, look)?;
     look.hear_interrupts()?;
     let estimate = estimate_with(&system, &records, &args.fix, seed, look)?;
     look.clear();

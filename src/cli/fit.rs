@@ -28,9 +28,10 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let document = Document::load(&args.config)?;
     let mut recipe: Recipe = document.read()?;
     let (system, want) = input::model(&args.on.model)?;
-    let read = |path: &PathBuf| input::record(path, &want, look);
-    let mut records: Vec<Record> = args.on.data.iter().map(read).collect::<Result<_, _>>()?;
-    let mut validation: Vec<Record> = args.validate.iter().map(read).collect::<Result<_, _>>()?;
+    let columns = &args.on.columns;
+    let read = |path: &PathBuf| input::record(path, &want, columns, look);
+    let mut records = input::records(&args.on.data, &want, columns, look)?;
+    let mut validation = input::records(&args.validate, &want, columns, look)?;
     let test = args.test.as_ref().map(read).transpose()?;
     if validation.is_empty() {
         look.say("No --validate: the last 20 % of each record are kept for validation.");

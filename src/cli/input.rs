@@ -1,11 +1,13 @@
 //! Model files and records as the commands take them.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use super::args::Columns;
 use super::console::Console;
 use super::failure::Failure;
-use lacuna::data::{Record, Remark, Step, Table, Want};
+use lacuna::data::{DataError, Record, Remark, Step, Table, Want};
 use lacuna::evaluate::Init;
+use lacuna::fault::Place;
 use lacuna::file::load;
 use lacuna::system::System;
 
@@ -36,21 +38,89 @@ pub fn want(system: &System) -> Result<Want, Failure> {
     })
 }
 
+/// The tables in a file; `-` is the standard input.
+pub fn tables(path: &Path) -> Result<Vec<Table>, Failure> {
+    if path == Path::new("-") {
+        return Ok(Table::read_all(std::io::stdin().lock(), "standard input")?);
+    }
+    Ok(Table::open_all(path)?)
+}
+
+/// The only table in a file.
+pub fn table(path: &Path) -> Result<Table, Failure> {
+    let mut tables = tables(path)?;
+    match (tables.len(), tables.pop()) {
+        (1, Some(table)) => Ok(table),
+        (count, _) => {
+            let file = Some(path.display().to_string());
+            let at = Box::new(Place { file, ..Place::default() });
+            Err(DataError::Several { at, count }.into())
+        }
+    }
+}
+
 /// A record; what was noticed in it is said.
-pub fn record(path: &Path, want: &Want, look: &Console) -> Result<Record, Failure> {
-    let (record, remarks) = Table::open(path)?.record_for(want)?;
+pub fn record(
+    path: &Path,
+    want: &Want,
+    columns: &Columns,
+    look: &Console,
+) -> Result<Record, Failure> {
+    let (record, remarks) = table(path)?.record_by(want, &columns.reading())?;
     tell(path, &remarks, look);
     Ok(record)
 }
 
+/// All records of some files.
+pub fn records(
+    paths: &[PathBuf],
+    want: &Want,
+    columns: &Columns,
+    look: &Console,
+) -> Result<Vec<Record>, Failure> {
+    let mut records = Vec::new();
+    for path in paths {
+        for table in tables(path)? {
+            let (record, remarks) = table.record_by(want, &columns.reading())?;
+            tell(path, &remarks, look);
+            records.push(record);
+        }
+    }
+    Ok(records)
+}
+
+/// Writes repaired records into a folder: repaired.csv, repaired-2.csv..
+pub fn keep_repaired(
+    records: &[Record],
+    columns: &Columns,
+    folder: &Path,
+    look: &Console,
+) -> Result<(), Failure> {
+    if !columns.repair {
+        return Ok(());
+    }
+    for (k, record) in records.iter().enumerate() {
+        let name = if k == 0 { "repaired.csv".into() } else { format!("repaired-{}.csv", k + 1) };
+        record.write_csv(folder.join(&name))?;
+        look.say(&format!("Wrote {name} into {}", folder.display()));
+    }
+    Ok(())
+}
+
 /// A record that need not hold outputs. A file with columns left over lacks none on purpose.
-pub fn record_to_simulate(path: &Path, want: &Want, look: &Console) -> Result<Record, Failure> {
-    let table = Table::open(path)?;
-    let (record, remarks) = table.record_for(&Want { outputs_required: false, ..want.clone() })?;
+pub fn record_to_simulate(
+    path: &Path,
+    want: &Want,
+    columns: &Columns,
+    look: &Console,
+) -> Result<Record, Failure> {
+    let (table, reading) = (table(path)?, columns.reading());
+    let free = Want { outputs_required: !reading.outputs.is_empty(), ..want.clone() };
+    let (record, remarks) = table.record_by(&free, &reading)?;
     let absent = remarks.iter().any(|r| matches!(r, Remark::AbsentOutputs { .. }));
     let extra = remarks.iter().any(|r| matches!(r, Remark::ExtraColumns { .. }));
-    if absent && extra {
-        table.record_for(want)?;
+    if absent && extra && reading.inputs.is_empty() {
+        table.record_by(want, &reading)?;
     }
     tell(path, &remarks, look);
     Ok(record)

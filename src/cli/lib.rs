@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! arguments -- args --> a command -- input --> System, Record -- the library --> Outcome
-//! Outcome -- console --> text on stderr, one JSON document on stdout, files
+//! Outcome -- console --> text or one JSON document on stdout, remarks on stderr, files
 //! ```
 
 mod args;
@@ -17,6 +17,7 @@ mod generate;
 mod input;
 mod linear;
 mod list;
+mod no_model;
 mod plan;
 mod simulate;
 mod study;

@@ -4,13 +4,11 @@ use super::args::Plan as Args;
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use lacuna::data::Record;
 use lacuna::diagnose::Planner;
 
 pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;
-    let read = |path: &std::path::PathBuf| input::record(path, &want, look);
-    let records: Vec<Record> = args.on.data.iter().map(read).collect::<Result<_, _>>()?;
+    let records = input::records(&args.on.data, &want, &args.on.columns, look)?;
     look.hear_interrupts()?;
     let outlook = Planner::of(&system).fix(&args.fix).run(&records, look)?;
     look.clear();

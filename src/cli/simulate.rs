@@ -1,33 +1,52 @@
 //! `lacuna simulate`.
 
+use std::path::Path;
+
 use serde_json::{Map, Value, json};
 
 use super::args::Simulate;
-use super::console::Console;
+use super::console::{Console, print};
 use super::failure::Failure;
 use super::input;
 use lacuna::data::Record;
 use lacuna::diagnose::number;
 use lacuna::evaluate::{Metrics, Simulation};
+use lacuna::fault::Place;
 
 pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
+    if args.out.as_deref() == Some(Path::new("-")) && look.json {
+        return Err(Failure::input(
+            "--out - and --json both want stdout".into(),
+            Place { key: Some("--out".into()), ..Place::default() },
+            "write the record into a file: --out simulated.csv".into(),
+        ));
+    }
     let (system, want) = input::model(&args.model)?;
-    let record = input::record_to_simulate(&args.data, &want, look)?;
+    let record = input::record_to_simulate(&args.data, &want, &args.columns, look)?;
     let run = Simulation::of(&system, &record, input::init(args.init))?;
-    if let Some(path) = &args.out {
-        simulated(&run, &want.outputs, &record)?.write_csv(path)?;
+    // the record goes to stdout, and words to stderr: one of both can be piped
+    let piped = args.out.as_deref() == Some(Path::new("-"));
+    let told = |text: &str| if piped { look.say(text) } else { look.result(text) };
+    match &args.out {
+        Some(_) if piped => {
+            let mut text = Vec::new();
+            simulated(&run, &want.outputs, &record)?.write_csv_to(&mut text)?;
+            print(&String::from_utf8_lossy(&text));
+        }
+        Some(path) => simulated(&run, &want.outputs, &record)?.write_csv(path)?,
+        None => {}
     }
     for (name, metrics) in &run.metrics {
         let unit = want.outputs.iter().find(|(n, _)| n == name).map_or("", |(_, unit)| unit);
-        look.result(&format!("{name}: {}", sentence(metrics, unit)));
+        told(&format!("{name}: {}", sentence(metrics, unit)));
     }
     if let Some(sample) = run.diverged_at {
-        look.result(&format!(
+        told(&format!(
             "The simulation diverges at sample {sample} (t = {} s).",
             number(record.time(sample), None)
         ));
     }
-    if let Some(path) = &args.out {
+    if let Some(path) = args.out.as_ref().filter(|_| !piped) {
         look.result(&format!("Wrote {}", path.display()));
     }
     let metrics: Map<String, Value> =

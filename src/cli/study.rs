@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::args::{Study as Args, StudyVerb};
+use super::args::{Columns, Study as Args, StudyVerb};
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
@@ -34,7 +34,7 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let jobs = study.share(i, n)?;
     let beside = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
     let (system, want) = input::model(&beside(&study.model))?;
-    let read = |name: &String| input::record(&beside(name), &want, look);
+    let read = |name: &String| input::record(&beside(name), &want, &Columns::default(), look);
     let all = |names: &[String]| names.iter().map(read).collect::<Result<Vec<Record>, _>>();
     let inputs = Inputs {
         training: all(&study.data)?,

@@ -22,10 +22,10 @@ fn plan_says_what_a_record_tells_and_proposes_more() {
     let pair = &document["look_alikes"][0];
     assert!(pair["rho"].as_f64().unwrap() > 0.95, "{pair}");
     let told = run(&folder, line).exits(0);
-    assert!(told.out.is_empty() && told.err.contains("Look alike: "), "{}", told.err);
-    assert!(told.err.contains("Experiments that would tell more"), "{}", told.err);
+    assert!(told.out.contains("Look alike: "), "{}", told.out);
+    assert!(told.out.contains("Experiments that would tell more"), "{}", told.out);
     let more = run(&folder, &format!("{line} -v")).exits(0);
-    assert!(more.err.contains("correlation") && more.err.len() > told.err.len());
+    assert!(more.out.contains("correlation") && more.out.len() > told.out.len());
     assert!(run(&folder, "plan --help").exits(0).out.contains("Example:"));
     let at = At { file: "", line: 0, column: 0, key: "mas" };
     refused(&folder, &format!("{line} --fix mas"), "call", at, &["`mass`"]);

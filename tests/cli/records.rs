@@ -101,7 +101,7 @@ fn a_discrete_model_and_another_step() {
     assert_eq!(error["file"], "d.csv");
     let message = error["message"].as_str().unwrap();
     assert!(message.contains("0.1") && message.contains("0.102"), "{message}");
-    assert!(error["hint"].as_str().unwrap().contains("resample"));
+    assert!(error["hint"].as_str().unwrap().contains("resample"), "{error}");
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args as Arguments;
 
-use super::positive;
+use super::{Columns, positive};
 
 #[derive(Debug, Clone, Arguments)]
 pub struct Estimate {
@@ -15,7 +15,7 @@ pub struct Estimate {
     /// stand above the noise]
     #[arg(long, value_name = "N", num_args = 0..=1, value_parser = positive)]
     pub lti: Option<Option<usize>>,
-    /// Record (CSV); may be repeated for several records of one machine
+    /// Record (CSV, .npz, .mat..; - is stdin); may be repeated for several records of one machine
     #[arg(long, value_name = "FILE", required = true)]
     pub data: Vec<PathBuf>,
     /// Model file to write
@@ -24,12 +24,8 @@ pub struct Estimate {
     /// Parameters that are right
     #[arg(long, value_name = "PARAMETER", value_delimiter = ',', num_args = 1.., conflicts_with = "lti")]
     pub fix: Vec<String>,
-    /// Columns that drive a linear model [default: u, u1..]
-    #[arg(long, value_name = "COLUMN", value_delimiter = ',', num_args = 1.., conflicts_with = "model")]
-    pub inputs: Vec<String>,
-    /// Columns that a linear model gives [default: y, y1..]
-    #[arg(long, value_name = "COLUMN", value_delimiter = ',', num_args = 1.., conflicts_with = "model")]
-    pub outputs: Vec<String>,
+    #[command(flatten)]
+    pub columns: Columns,
     /// Time between two samples in s, for records without a column `time`
     #[arg(long, value_name = "S", value_parser = seconds, conflicts_with = "model")]
     pub sampling_time: Option<f64>,

@@ -2,7 +2,7 @@
 
 use super::error::DataError;
 use super::remark::Remark;
-use super::table::Table;
+use super::table::{Column, Table};
 use super::unit::{Relation, relate};
 
 /// A step may be this share off the usual one.
@@ -19,9 +19,21 @@ pub(super) struct Clock {
 
 /// Reads the column `time`; none where there is no such column.
 pub(super) fn read(table: &Table, remarks: &mut Vec<Remark>) -> Result<Option<Clock>, DataError> {
-    let Some(column) = table.find("time") else {
+    let Some(column) = table.find_for("time") else {
         return Ok(None);
     };
+    if column.name != "time" {
+        remarks.push(Remark::Spelling { column: column.name.clone(), signal: "time".into() });
+    }
+    of(table, column, remarks)
+}
+
+/// The times of a column in s, whatever its unit.
+pub(super) fn times(
+    table: &Table,
+    column: &Column,
+    remarks: &mut Vec<Remark>,
+) -> Result<Vec<f64>, DataError> {
     table.check(std::iter::once(column))?;
     let mut times = column.values.clone();
     match relate(&column.unit, "s") {
@@ -43,6 +55,16 @@ pub(super) fn read(table: &Table, remarks: &mut Vec<Remark>) -> Result<Option<Cl
             });
         }
     }
+    Ok(times)
+}
+
+/// What a column says as a clock; none where there are no rows.
+pub(super) fn of(
+    table: &Table,
+    column: &Column,
+    remarks: &mut Vec<Remark>,
+) -> Result<Option<Clock>, DataError> {
+    let times = times(table, column, remarks)?;
     let place = |row: usize| table.place(column, table.lines.get(row).copied().unwrap_or(0));
     if let Some(row) = times.iter().position(|time| time.is_nan()) {
         return Err(DataError::TimeMissing { at: place(row) });
@@ -86,7 +108,7 @@ pub(super) fn read(table: &Table, remarks: &mut Vec<Remark>) -> Result<Option<Cl
 
 /// The number with the fewest digits, or the fraction `1/rate`, within `tolerance`: what
 /// was 0.1 s before the times were rounded to binary numbers is 0.1 s again.
-fn tidy(step: f64, tolerance: f64) -> f64 {
+pub(super) fn tidy(step: f64, tolerance: f64) -> f64 {
     let candidates = [
         digits(step, 10),
         1.0 / digits(1.0 / step, 10),

@@ -1,19 +1,26 @@
 //! CSV text as people's programs write it, read into a [`Table`].
 //!
-//! Separator `,`, `;` or tab, told from the line of names; `#` comments and blank lines
-//! anywhere; quotes; a byte order mark; line ends of every system; separators at the end
-//! of lines and lines without the last columns. What cannot be understood is refused
-//! with its place and never guessed.
+//! Separator `,`, `;` or tab, told from the line of names or stated by `sep=`; `#` comments
+//! and blank lines anywhere; lines above the names; a row of units below them; quotes; a
+//! byte order mark; line ends of every system; separators at the end of lines and lines
+//! without the last columns; decimal commas where the separator is none; dates and times of
+//! day. Whatever is not the plain form is said. What cannot be understood is refused with
+//! its place and never guessed.
 
+mod begin;
+mod date;
 mod fields;
 mod header;
 
 use super::error::DataError;
 use super::remark::Remark;
-use super::table::{CellFault, Table};
+use super::table::{CellFault, CellProblem, Table};
+use super::text;
 use crate::fault::Place;
-use fields::{is_comment, lines, quoted, separator};
-use header::{names, not_utf8};
+use begin::begin;
+use date::Instant;
+use fields::{is_comment, lines, quoted};
+use header::names;
 use std::io::{self, Read};
 
 pub(super) fn unreadable(source: &str, error: io::Error) -> DataError {
@@ -34,38 +41,37 @@ pub(super) fn unpack(bytes: Vec<u8>, source: &str) -> Result<Vec<u8>, DataError>
 
 /// Reads the text of a file.
 pub(super) fn parse(bytes: &[u8], source: &str) -> Result<Table, DataError> {
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
-    let text = std::str::from_utf8(bytes).map_err(|e| not_utf8(bytes, e.valid_up_to(), source))?;
-    let mut lines = lines(text);
-    let mut comment = None;
-    let (header_line, header) = loop {
-        match lines.next() {
-            None => {
-                return Err(DataError::Empty { at: place(source, None, None) });
-            }
-            Some((_, line)) if line.trim().is_empty() => {}
-            Some((number, line)) if is_comment(line) => comment = Some(number),
-            Some(found) => break found,
-        }
+    let (text, encoding) = text::decode(bytes, source)?;
+    let Some(begin) = begin(&text) else {
+        return Err(DataError::Empty { at: place(source, None, None) });
     };
-    let separator = separator(header);
-    let (columns, mut trailing) = names(header, header_line, separator, comment, source)?;
+    let (columns, mut trailing, spelt) = names(&begin, source)?;
+    let header_line = begin.header.0;
+    let mut remarks: Vec<Remark> = encoding.into_iter().collect();
+    if begin.preamble > 0 {
+        remarks.push(Remark::Preamble { count: begin.preamble, header_line });
+    }
+    remarks.extend(begin.units.as_ref().map(|(line, _)| Remark::UnitRow { line: *line }));
+    remarks.extend(spelt);
+    let below = begin.units.as_ref().map_or(header_line, |(line, _)| *line);
     let mut sheet = Sheet {
+        cells: vec![Cells::default(); columns.len()],
         table: Table {
             source: source.to_owned(),
             header_line,
             columns,
             lines: Vec::new(),
-            remarks: Vec::new(),
+            remarks,
             step: None,
+            chosen: Vec::new(),
         },
-        separator,
+        separator: begin.separator,
         short: Tally::default(),
         full: 0,
     };
-    for (number, line) in lines {
+    for (number, line) in lines(&text).skip(below) {
         // a line of tabs is a row without values where tabs separate
-        let blank = line.trim().is_empty() && !(separator == '\t' && line.contains('\t'));
+        let blank = line.trim().is_empty() && !(begin.separator == '\t' && line.contains('\t'));
         if !blank && !is_comment(line) && sheet.row(number, line)? {
             trailing.add(number);
         }
@@ -89,8 +95,22 @@ impl Tally {
     }
 }
 
+/// What the cells of a column were so far.
+#[derive(Clone, Default)]
+struct Cells {
+    /// Whether one was a plain number, and whether one had a decimal point.
+    number: bool,
+    point: bool,
+    /// Cells with a decimal comma, and the first of them.
+    commas: usize,
+    comma: Option<CellFault>,
+    /// The first date or time of day, in whole seconds, and whether it had a date.
+    first: Option<(i64, bool)>,
+}
+
 /// The table while its rows are read.
 struct Sheet {
+    cells: Vec<Cells>,
     table: Table,
     separator: char,
     short: Tally,
@@ -142,19 +162,68 @@ impl Sheet {
         let Some(column) = self.table.columns.get_mut(k) else {
             return if field.is_empty() { Ok(false) } else { Err(self.overfull(number, line)) };
         };
+        let cells = &mut self.cells[k];
         match fields::number(field) {
-            Ok(value) => {
+            Ok(value) if cells.first.is_none() || value.is_nan() => {
                 column.values.push(value);
+                cells.number |= !value.is_nan();
+                cells.point |= self.separator != ',' && field.contains('.');
                 Ok(!value.is_nan())
             }
-            Err(problem) => {
-                column.values.push(f64::NAN);
-                if column.fault.is_none() {
-                    let found = shortened(field);
-                    column.fault = Some(CellFault { line: number, found, problem });
+            other => {
+                let problem = other.err().unwrap_or(CellProblem::Text);
+                let fault = || CellFault { line: number, found: shortened(field), problem };
+                let value = match problem {
+                    CellProblem::DecimalComma if self.separator != ',' => {
+                        let value = fields::with_comma(field);
+                        if value.is_some() {
+                            cells.commas += 1;
+                            cells.number = true;
+                            cells.comma.get_or_insert_with(fault);
+                        }
+                        value
+                    }
+                    CellProblem::Text if !cells.number => {
+                        let instant = Instant::parse(field);
+                        instant.and_then(|instant| {
+                            let first =
+                                *cells.first.get_or_insert((instant.seconds, instant.dated));
+                            (first.1 == instant.dated).then(|| instant.since(first.0))
+                        })
+                    }
+                    _ => None,
+                };
+                if value.is_none() && column.fault.is_none() {
+                    column.fault = Some(fault());
                 }
+                column.values.push(value.unwrap_or(f64::NAN));
                 Ok(true)
             }
+        }
+    }
+
+    /// Says what was read in another way than plain numbers; refuses a mixture of both.
+    fn other_forms(&mut self) {
+        let pointed = self.cells.iter().any(|cells| cells.point);
+        let (mut commas, mut first_line) = (0, usize::MAX);
+        for (column, cells) in self.table.columns.iter_mut().zip(&mut self.cells) {
+            if let Some(fault) = cells.comma.take() {
+                commas += cells.commas;
+                first_line = first_line.min(fault.line);
+                let before = column.fault.as_ref().is_none_or(|other| fault.line < other.line);
+                if pointed && before {
+                    column.fault = Some(fault);
+                }
+            }
+            if cells.first.is_some() {
+                if column.unit.is_empty() {
+                    column.unit = "s".into();
+                }
+                self.table.remarks.push(Remark::Instants { column: column.name.clone() });
+            }
+        }
+        if commas > 0 && !pointed {
+            self.table.remarks.push(Remark::DecimalCommas { count: commas, first_line });
         }
     }
 
@@ -178,6 +247,7 @@ impl Sheet {
     }
 
     fn finish(mut self, trailing: Tally) -> Result<Table, DataError> {
+        self.other_forms();
         let table = &mut self.table;
         if self.full == 0 {
             let at = place(&table.source, Some(table.header_line), None);
@@ -203,7 +273,7 @@ impl Sheet {
     }
 }
 
-fn place(source: &str, line: Option<usize>, column: Option<usize>) -> Box<Place> {
+pub(super) fn place(source: &str, line: Option<usize>, column: Option<usize>) -> Box<Place> {
     Box::new(Place { file: Some(source.to_owned()), line, column, key: None })
 }
 

@@ -45,15 +45,57 @@ pub enum DataError {
         /// The file and the line of the names.
         at: Box<Place>,
     },
-    /// A byte that is no UTF-8.
-    #[error("{}found the byte 0x{byte:02X}, which is not UTF-8 text", .at.lead())]
-    NotUtf8 {
-        /// File, line, and as far as it can be told, column.
+    /// A byte that stands in no text.
+    #[error("{}found the byte 0x{byte:02X}: this is neither text nor a kind of file that is read", .at.lead())]
+    NotText {
+        /// File and line.
         at: Box<Place>,
         /// The byte.
         byte: u8,
-        /// Whether the file begins as UTF-16 does.
-        utf16: bool,
+    },
+    /// A file of a kind that holds records but is not read.
+    #[error("{}this is {found}", .at.lead())]
+    OtherKind {
+        /// The file.
+        at: Box<Place>,
+        /// What it is.
+        found: &'static str,
+        /// How to make a file of it that is read.
+        remedy: &'static str,
+    },
+    /// A file that ends too early or contradicts itself.
+    #[error("{}is damaged or cut short: {found}", .at.lead())]
+    Broken {
+        /// The file, and the array or variable as key.
+        at: Box<Place>,
+        /// What was found.
+        found: String,
+    },
+    /// An array that cannot be the samples of a record.
+    #[error("{}{found}", .at.lead())]
+    Array {
+        /// The file, and the array or variable as key.
+        at: Box<Place>,
+        /// What it is.
+        found: String,
+    },
+    /// Several records where one is wanted.
+    #[error("{}holds {count} records, where one is wanted", .at.lead())]
+    Several {
+        /// The file.
+        at: Box<Place>,
+        /// How many.
+        count: usize,
+    },
+    /// A choice of columns that does not fit.
+    #[error("{}{problem}", .at.lead())]
+    Choice {
+        /// The file, and the column as key.
+        at: Box<Place>,
+        /// What does not fit.
+        problem: String,
+        /// What to try.
+        remedy: String,
     },
     /// Numbers, or nothing, where the column names should be.
     #[error("{}found `{found}` where the column names belong", .at.lead())]
@@ -191,8 +233,8 @@ pub enum DataError {
     NoSamplingTime {
         /// File, and `sampling_time` as key.
         at: Box<Place>,
-        /// A column whose name looks like a time.
-        perhaps: Option<String>,
+        /// A column that looks like a time, and its step in s where it is regular.
+        perhaps: Option<(String, Option<f64>)>,
     },
     /// Fewer samples than are needed.
     #[error("{}found {found} samples in a row, at least {needed} are needed", .at.lead())]

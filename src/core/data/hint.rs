@@ -8,7 +8,10 @@ impl Explain for DataError {
     fn kind(&self) -> Kind {
         match self {
             Self::Write { .. } => Kind::Work,
-            Self::Length { .. } | Self::Fractions { .. } | Self::EmptyPart { .. } => Kind::Call,
+            Self::Length { .. }
+            | Self::Fractions { .. }
+            | Self::EmptyPart { .. }
+            | Self::Choice { .. } => Kind::Call,
             _ => Kind::Input,
         }
     }
@@ -20,7 +23,12 @@ impl Explain for DataError {
             | Self::Write { at, .. }
             | Self::Empty { at }
             | Self::NoRows { at }
-            | Self::NotUtf8 { at, .. }
+            | Self::NotText { at, .. }
+            | Self::OtherKind { at, .. }
+            | Self::Broken { at, .. }
+            | Self::Array { at, .. }
+            | Self::Several { at, .. }
+            | Self::Choice { at, .. }
             | Self::NoHeader { at, .. }
             | Self::Header { at, .. }
             | Self::DuplicateColumn { at, .. }
@@ -55,12 +63,18 @@ impl Explain for DataError {
             Self::Write { .. } => "check that the folder exists and may be written".into(),
             Self::Empty { .. } => "the first line names the columns, such as `time,u [N],y [m]`".into(),
             Self::NoRows { .. } => "add one line of numbers for each sample".into(),
-            Self::NotUtf8 { utf16: true, .. } => "this is UTF-16 text: save it as `CSV UTF-8`".into(),
-            Self::NotUtf8 { .. } => {
-                "save the file as `CSV UTF-8`; often the byte is a degree sign or a µ of an older encoding".into()
+            Self::NotText { .. } => {
+                "records are read from CSV text, .npy, .npz and .mat files".into()
             }
+            Self::OtherKind { remedy, .. } => (*remedy).into(),
+            Self::Broken { .. } => "write or copy the file again".into(),
+            Self::Array { .. } => {
+                "a signal is an array of real numbers: one value a sample, or samples by channels".into()
+            }
+            Self::Several { .. } => "put the record that is meant into a file of its own".into(),
+            Self::Choice { remedy, .. } => remedy.clone(),
             Self::NoHeader { comment: Some(line), .. } => {
-                format!("if line {line} holds the names, remove its `#`; else add a line such as `time,u,y` first")
+                format!("if line {line} holds the names, remove its `#`; else add a line such as `time,u,y` above the numbers")
             }
             Self::NoHeader { .. } => "add a first line with the names, such as `time,u,y`".into(),
             Self::Header { .. } => "write `name [unit]` on one line; `time` is the record's own column".into(),
@@ -78,31 +92,36 @@ impl Explain for DataError {
             }
             Self::NoSuchColumn { wanted, known, .. } => column_hint(wanted, known),
             Self::UnitClash { found, wanted, factor: Some(factor), .. } => format!(
-                "multiply the values by {} and write [{wanted}], or state the model in [{found}]; only time and angle are converted",
+                "multiply the values by {} and write [{wanted}], or state the model in [{found}]; only time, angle and products of units are converted",
                 short(*factor)
             ),
             Self::UnitClash { .. } => {
                 "correct the unit in the header or in the model; an empty unit matches any".into()
             }
-            Self::TimeMissing { .. } => "every row needs its time; or remove the column and state `sampling_time`".into(),
-            Self::TimeOrder { .. } => "sort the rows by time and remove repeated ones; two records need two files".into(),
+            Self::TimeMissing { .. } => {
+                "every row needs its time: --repair leaves out those without; or remove the column and state `sampling_time`".into()
+            }
+            Self::TimeOrder { .. } => {
+                "--repair sorts the rows by time and leaves out repeated ones; two records need two files, or a column `record`".into()
+            }
             Self::TimeIrregular { rounded_from: Some(step), .. } => format!(
-                "if the clock was regular and the times are only rounded, remove the column and write `sampling_time = {step}`; else resample: interpolate every column at multiples of one step"
+                "--repair makes the clock regular and says how; if the times are only rounded, removing the column and writing `sampling_time = {step}` does the same"
             ),
             Self::TimeIrregular { missing_rows, median, .. } if *missing_rows > 0 => format!(
-                "rows seem to be missing before this line: {missing_rows} at {median} s; add them with their times and empty values, or split the file here, or resample: interpolate every column at multiples of {median} s"
+                "rows seem to be missing before this line, {missing_rows} at {median} s: --repair puts them in and says how"
             ),
-            Self::TimeIrregular { median, .. } => format!(
-                "resample: interpolate every column at multiples of {median} s, and write the times with enough digits"
-            ),
+            Self::TimeIrregular { median, .. } => {
+                format!("--repair resamples the record at multiples of {median} s and says how")
+            }
             Self::StepDiffers { found, .. } => format!(
                 "resample the record to the model's step, or use a model for {found} s; a continuous-time model takes any step"
             ),
-            Self::NoSamplingTime { perhaps: Some(name), .. } => {
-                format!("rename the column `{name}` to `time`, or write `sampling_time = 0.01` (in s) in the model file")
+            Self::NoSamplingTime { perhaps: Some((name, step)), .. } => {
+                let step = step.map_or_else(String::new, |step| format!(", in steps of {} s", short(step)));
+                format!("`{name}` looks like the time{step}: --rename {name}=time, or give the column that name")
             }
             Self::NoSamplingTime { .. } => {
-                "add a column `time`, or write `sampling_time = 0.01` (in s) in the model file (`sampled_at` in Rust)".into()
+                "add a column `time`, or the record's step in s as `sampling_time` in the model file (`sampled_at` in Rust)".into()
             }
             Self::TooFew { .. } => "use a longer record, or one with fewer gaps in its inputs".into(),
             Self::NoCompleteRow { .. } => "an input may have gaps, but some rows need all inputs at once".into(),
@@ -139,7 +158,9 @@ fn column_hint(wanted: &str, known: &[String]) -> String {
         name.strip_prefix(wanted).is_some_and(|rest| rest.trim_start().starts_with('('))
     };
     if let Some(name) = known.iter().find(bracketed) {
-        return format!("write the unit of `{name}` in square brackets, `{wanted} [unit]`");
+        return format!(
+            "no unit is known in `{name}`: write `{wanted} [unit]`, or --rename \"{name}={wanted}\""
+        );
     }
     if let [only] = known
         && only.contains([' ', '\t', '|'])
@@ -147,7 +168,10 @@ fn column_hint(wanted: &str, known: &[String]) -> String {
         return "columns are separated by `,`, `;` or a tab".into();
     }
     match nearest(wanted, known.iter().map(String::as_str)) {
-        Some(near) => format!("did you mean `{near}`? Rename the column, or the signal in the model"),
-        None => "name the columns as the model names its inputs and outputs, or u1.. and y1.. in their order".into(),
+        Some(near) => format!("did you mean `{near}`? Then --rename {near}={wanted}"),
+        None => {
+            "choose the columns by --inputs and --outputs, in the model's order, or --rename a=b"
+                .into()
+        }
     }
 }

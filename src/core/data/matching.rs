@@ -26,11 +26,11 @@ pub struct Want {
     pub minimum: usize,
 }
 
-/// Reads a CSV file as the record that a model wants.
+/// Reads a file as the record that a model wants.
 ///
 /// Columns are matched by name. Where none of the wanted names of the inputs occurs,
 /// `u1`, `u2`.. (or `u`, for one input) stand for them by position; likewise `y1`.. for
-/// the outputs. Units of time and angle are converted. All other columns are ignored.
+/// the outputs. Units of time and angle, and products of units, are converted. All other columns are ignored.
 /// What happened is said in the remarks.
 ///
 /// # Errors
@@ -62,7 +62,7 @@ impl Table {
                 return Err(self.no_such_column(&wanted[k].0));
             }
         }
-        let time = self.find("time");
+        let time = self.find_for("time");
         let used: Vec<&Column> =
             inputs.iter().chain(&outputs).flatten().copied().chain(time).collect();
         let extra = self.columns.iter().filter(|c| used.iter().all(|u| u.number != c.number));
@@ -75,6 +75,7 @@ impl Table {
 
         let clock = clock::read(self, &mut remarks)?;
         let found = clock.as_ref().and_then(|clock| clock.step);
+        let found = found.or(self.step.filter(|_| clock.is_none()));
         let mut record = Record::new(self.step_for(want.step, found, &mut remarks)?);
         record.source.clone_from(&self.source);
         record.start = clock.map_or(0.0, |clock| clock.start);
@@ -94,13 +95,13 @@ impl Table {
     }
 
     /// The columns for one group of signals, by name or else by letter and position.
-    fn columns_for(
+    pub(super) fn columns_for(
         &self,
         wanted: &[(String, String)],
         others: &[(String, String)],
         letter: char,
     ) -> Vec<Option<&Column>> {
-        let named: Vec<_> = wanted.iter().map(|(name, _)| self.find(name)).collect();
+        let named: Vec<_> = wanted.iter().map(|(name, _)| self.find_for(name)).collect();
         if named.iter().any(Option::is_some) {
             return named;
         }
@@ -119,7 +120,10 @@ impl Table {
         (name, unit): &(String, String),
         remarks: &mut Vec<Remark>,
     ) -> Result<Signal, DataError> {
-        if column.name != *name {
+        if column.name.to_lowercase() == name.to_lowercase() && column.name != *name {
+            let (column, signal) = (column.name.clone(), name.clone());
+            remarks.push(Remark::Spelling { column, signal });
+        } else if column.name != *name && column.header != *name {
             remarks.push(Remark::ByPosition { column: column.name.clone(), signal: name.clone() });
         }
         let mut values = column.values.clone();

@@ -1,7 +1,7 @@
 //! Measured or made signals, with units, time and a way to be split.
 //!
-//! A [`Record`] holds inputs and outputs sampled at one regular step. It comes from a CSV
-//! file, matched with what a model wants ([`read_for`]) or with the columns a user names
+//! A [`Record`] holds inputs and outputs sampled at one regular step. It comes from a
+//! file (CSV, NumPy, MATLAB), matched with what a model wants ([`read_for`]) or with the columns a user names
 //! ([`Record::csv`]), or is made from values ([`Record::new`]), an excitation
 //! ([`Excitation`]) and [`noise`]. It can be cut ([`Record::slice`], [`Record::split`]),
 //! searched for repetition ([`Record::periods`]) and written ([`Record::write_csv`]).
@@ -19,21 +19,32 @@
 //! # Ok::<(), lacuna::data::DataError>(())
 //! ```
 
+mod arrays;
 mod clock;
 mod csv;
 mod error;
 mod excite;
 mod hint;
+mod kind;
+mod mat;
 mod matching;
 pub mod noise;
+mod npy;
+mod npz;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod periods;
 mod pick;
 mod random;
+mod reading;
 mod record;
+mod records;
 mod remark;
+mod repair;
 mod split;
 mod step;
 mod table;
+mod text;
 pub mod unit;
 mod write;
 
@@ -44,6 +55,7 @@ pub use excite::{
 pub use matching::{Want, read_for};
 pub use periods::Periods;
 pub use random::Random;
+pub use reading::Reading;
 pub use record::{Record, Signal};
 pub use remark::Remark;
 pub use step::Step;

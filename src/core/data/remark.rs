@@ -1,7 +1,6 @@
 //! What was noticed while a record was read, without being a fault.
 
-use super::hint::short;
-use std::fmt;
+mod words;
 
 /// Something the user should be told; `Display` makes one line of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,6 +25,78 @@ pub enum Remark {
         column: String,
         /// The input or output it stands for.
         signal: String,
+    },
+    /// A column whose name differs from the wanted one in capitals.
+    Spelling {
+        /// The column.
+        column: String,
+        /// The input or output, or `time`.
+        signal: String,
+    },
+    /// The file is not UTF-8.
+    Encoding {
+        /// How it was read.
+        name: &'static str,
+        /// The first line where that shows.
+        line: usize,
+    },
+    /// Lines above the names, left out.
+    Preamble {
+        /// How many lines.
+        count: usize,
+        /// Line of the names.
+        header_line: usize,
+    },
+    /// A row of units below the names.
+    UnitRow {
+        /// Its line.
+        line: usize,
+    },
+    /// Headers that give their unit in another way than `name [unit]`.
+    UnitsSpelt {
+        /// These headers.
+        columns: Vec<String>,
+    },
+    /// Numbers with a decimal comma.
+    DecimalCommas {
+        /// How many.
+        count: usize,
+        /// The line of the first.
+        first_line: usize,
+    },
+    /// A column of dates or times of day, read as seconds after the first one.
+    Instants {
+        /// The column.
+        column: String,
+    },
+    /// An array whose rows are channels and not samples.
+    Turned {
+        /// The array.
+        array: String,
+        /// Its channels and samples.
+        shape: (usize, usize),
+    },
+    /// Arrays or variables that hold no samples.
+    NotSamples {
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// A step that stands in the file beside the columns.
+    Stated {
+        /// What holds it: `Ts`.
+        name: String,
+        /// The step, s.
+        step: f64,
+    },
+    /// The file holds several records.
+    Records {
+        /// Their names or numbers.
+        names: Vec<String>,
+    },
+    /// Something that `--repair` did.
+    Repaired {
+        /// What it did, how often, and by which method.
+        what: String,
     },
     /// Lines end with a separator that no column follows.
     TrailingSeparator {
@@ -90,99 +161,4 @@ pub enum Remark {
         /// Which of the two holds, s.
         taken: f64,
     },
-}
-
-impl fmt::Display for Remark {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::ExtraColumns { names } => {
-                let shown: Vec<String> = names.iter().map(|name| named(name)).collect();
-                write!(f, "{} ignored: {}", count(names.len(), "extra column"), shown.join(", "))
-            }
-            Self::Converted { column, from, to } => {
-                write!(f, "column `{column}`: {from} converted to {to}")
-            }
-            Self::ByPosition { column, signal } => {
-                write!(f, "column `{column}` taken for `{signal}` by position")
-            }
-            Self::TrailingSeparator { count: n, first_line } => write!(
-                f,
-                "{} with a separator at the end, which was ignored (first: line {first_line})",
-                count(*n, "line")
-            ),
-            Self::ShortRows { count: n, first_line } => write!(
-                f,
-                "{} without the last columns; the values there count as missing (first: line {first_line})",
-                count(*n, "line")
-            ),
-            Self::EmptyRows { count: n, first_line } => {
-                write!(
-                    f,
-                    "{} without any value at the end left out (from line {first_line})",
-                    count(*n, "row")
-                )
-            }
-            Self::MissingInput { signal, count: n, lines } => write!(
-                f,
-                "input `{signal}`: {} ({}); the segment ends there",
-                count(*n, "missing value"),
-                first_lines(*n, lines)
-            ),
-            Self::MissingOutput { signal, count: n, lines } => write!(
-                f,
-                "output `{signal}`: {} ({}), without weight",
-                count(*n, "missing value"),
-                first_lines(*n, lines)
-            ),
-            Self::Segments { count: n, samples, rows } => write!(
-                f,
-                "{} with all inputs present, {samples} of {rows} rows; each starts with its own estimated state",
-                count(*n, "segment")
-            ),
-            Self::AbsentOutputs { names } => {
-                write!(f, "no measurement of: {}", names.join(", "))
-            }
-            Self::Step { found, stated, taken } => write!(
-                f,
-                "the record's step is {} s, the model's sampling_time {} s; {} s is taken",
-                short(*found),
-                short(*stated),
-                short(*taken)
-            ),
-        }
-    }
-}
-
-fn named(name: &str) -> String {
-    if name.is_empty() { "(no name)".into() } else { name.into() }
-}
-
-fn count(n: usize, what: &str) -> String {
-    format!("{n} {what}{}", if n == 1 { "" } else { "s" })
-}
-
-fn first_lines(count: usize, lines: &[usize]) -> String {
-    let shown: Vec<String> = lines.iter().map(usize::to_string).collect();
-    let more = if count > lines.len() { ", .." } else { "" };
-    format!("line{} {}{more}", if count == 1 { "" } else { "s" }, shown.join(", "))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn remarks_are_one_line_each() {
-        let converted =
-            Remark::Converted { column: "angle".into(), from: "deg".into(), to: "rad".into() };
-        assert_eq!(converted.to_string(), "column `angle`: deg converted to rad");
-        let missing =
-            Remark::MissingInput { signal: "force".into(), count: 7, lines: vec![3, 4, 5, 6, 8] };
-        assert_eq!(
-            missing.to_string(),
-            "input `force`: 7 missing values (lines 3, 4, 5, 6, 8, ..); the segment ends there"
-        );
-        let extra = Remark::ExtraColumns { names: vec!["x0".into(), String::new()] };
-        assert_eq!(extra.to_string(), "2 extra columns ignored: x0, (no name)");
-    }
 }

@@ -1,6 +1,6 @@
 //! The sampling time: the record's, the model's, or a quarrel between the two.
 
-use super::clock::JITTER;
+use super::clock::{self, JITTER};
 use super::error::DataError;
 use super::remark::Remark;
 use super::table::{Column, Table};
@@ -42,7 +42,7 @@ impl Table {
                 let off = (found - step).abs() / step;
                 if off > JITTER {
                     let line = self.lines.get(1).copied().unwrap_or(self.header_line);
-                    let column = self.find("time").map(|column| self.place(column, line));
+                    let column = self.find_for("time").map(|column| self.place(column, line));
                     let at = column.unwrap_or_default();
                     return Err(DataError::StepDiffers { at, found, wanted: step });
                 }
@@ -59,7 +59,7 @@ impl Table {
                 Ok(found)
             }
             (_, Some(step), None) | (_, None, Some(step)) => Ok(step),
-            (_, None, None) if self.find("time").is_some() => {
+            (_, None, None) if self.find_for("time").is_some() => {
                 Err(DataError::TooFew { at: self.whole(), found: self.rows(), needed: 2 })
             }
             (_, None, None) => {
@@ -69,7 +69,10 @@ impl Table {
                         && !matches!(relate(&column.unit, "s"), Relation::Clash { .. });
                     time_unit || name == "t" || name.starts_with("time")
                 };
-                let perhaps = self.columns.iter().find(like_time).map(|c| c.name.clone());
+                let perhaps = self.columns.iter().find(like_time).map(|column| {
+                    let clock = clock::of(self, column, &mut Vec::new());
+                    (column.name.clone(), clock.ok().flatten().and_then(|clock| clock.step))
+                });
                 let mut at = self.whole();
                 at.key = Some("sampling_time".into());
                 Err(DataError::NoSamplingTime { at, perhaps })

@@ -2,6 +2,7 @@
 
 use super::csv;
 use super::error::DataError;
+use super::kind;
 use super::remark::Remark;
 use crate::fault::Place;
 use std::io::Read;
@@ -16,6 +17,8 @@ pub struct Column {
     pub unit: String,
     /// Its position in the file, from 1.
     pub number: usize,
+    /// The header as it stands in the file.
+    pub(super) header: String,
     pub(super) values: Vec<f64>,
     /// The first cell that is no number. Text in a column that nobody asks for is no
     /// fault, so it is kept until somebody does.
@@ -38,7 +41,8 @@ pub(super) struct CellFault {
     pub problem: CellProblem,
 }
 
-/// The columns of a CSV file with the lines their rows stand in.
+/// The columns of a file with the lines their rows stand in; of a file that holds no text,
+/// a line is a row, from 1.
 ///
 /// ```
 /// use lacuna::data::Table;
@@ -59,34 +63,58 @@ pub struct Table {
     pub(super) remarks: Vec<Remark>,
     /// The step, s, where no time column says it.
     pub(super) step: Option<f64>,
+    /// Columns that a user chose for signals: the signal's name and the column's number.
+    pub(super) chosen: Vec<(String, usize)>,
 }
 
 impl Table {
-    /// Reads a CSV file, packed by gzip or not (told by its content, not its name).
+    /// Reads a file with one record: CSV, `.npy`, `.npz`, `.mat` (versions 4 to 7) or, where
+    /// it is built in, Parquet; packed by gzip or not. What it is is told by its content, not
+    /// its name.
     ///
     /// # Errors
     ///
-    /// A file that cannot be read or unpacked, is empty, holds no rows, is no UTF-8 text,
-    /// has no line of names or a name twice, or a line with more values than names. A
-    /// cell that is no number is reported when its column is used.
+    /// A file that cannot be read or unpacked, is empty, holds no rows, is of another kind,
+    /// has no line of names or a name twice, or a line with more values than names; one with
+    /// several records, which [`Table::open_all`] reads. A cell that is no number is reported
+    /// when its column is used.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, DataError> {
-        let path = path.as_ref();
-        let source = path.display().to_string();
-        match std::fs::File::open(path) {
-            Ok(file) => Self::read(file, &source),
-            Err(error) => Err(csv::unreadable(&source, error)),
-        }
+        one(Self::open_all(path)?)
     }
 
-    /// Reads CSV from anything that can be read; `source` is what errors call the file.
+    /// Reads a file with one record or several: a column `record` that numbers them, arrays
+    /// with a third dimension, or structures.
     ///
     /// # Errors
     ///
     /// As [`Table::open`].
-    pub fn read(mut from: impl Read, source: &str) -> Result<Self, DataError> {
+    pub fn open_all(path: impl AsRef<Path>) -> Result<Vec<Self>, DataError> {
+        let path = path.as_ref();
+        let source = path.display().to_string();
+        match std::fs::File::open(path) {
+            Ok(file) => Self::read_all(file, &source),
+            Err(error) => Err(csv::unreadable(&source, error)),
+        }
+    }
+
+    /// Reads from anything that can be read; `source` is what errors call the file.
+    ///
+    /// # Errors
+    ///
+    /// As [`Table::open`].
+    pub fn read(from: impl Read, source: &str) -> Result<Self, DataError> {
+        one(Self::read_all(from, source)?)
+    }
+
+    /// Reads one record or several from anything that can be read.
+    ///
+    /// # Errors
+    ///
+    /// As [`Table::open`].
+    pub fn read_all(mut from: impl Read, source: &str) -> Result<Vec<Self>, DataError> {
         let mut bytes = Vec::new();
         match from.read_to_end(&mut bytes) {
-            Ok(_) => csv::parse(&csv::unpack(bytes, source)?, source),
+            Ok(_) => kind::tables(&csv::unpack(bytes, source)?, source),
             Err(error) => Err(csv::unreadable(source, error)),
         }
     }
@@ -116,7 +144,13 @@ impl Table {
         self.lines.get(row).copied()
     }
 
-    /// What was noticed while reading: trailing separators, short or empty rows.
+    /// The step in s that the file states beside its columns, or that was given by
+    /// [`Table::sampled_at`].
+    pub fn step(&self) -> Option<f64> {
+        self.step
+    }
+
+    /// What was noticed while reading: another encoding, lines left out, short rows.
     pub fn remarks(&self) -> &[Remark] {
         &self.remarks
     }
@@ -132,16 +166,34 @@ impl Table {
         Ok(&column.values)
     }
 
-    /// The column of that name; columns without a name cannot be asked for.
+    /// The column of that name, or of that header; columns without a name cannot be asked for.
     pub(super) fn find(&self, name: &str) -> Option<&Column> {
-        self.columns.iter().find(|column| !name.is_empty() && column.name == name)
+        let named = |column: &&Column| !name.is_empty() && column.name == name;
+        let headed = |column: &&Column| !name.is_empty() && column.header == name;
+        self.columns.iter().find(named).or_else(|| self.columns.iter().find(headed))
+    }
+
+    /// The column for a signal: the one chosen for it, the one of its name, or the only one
+    /// whose name differs in capitals alone.
+    pub(super) fn find_for(&self, name: &str) -> Option<&Column> {
+        if let Some((_, number)) = self.chosen.iter().find(|(signal, _)| signal == name) {
+            return self.columns.iter().find(|column| column.number == *number);
+        }
+        let free =
+            |column: &&Column| self.chosen.iter().all(|(_, number)| *number != column.number);
+        self.find(name).filter(free).or_else(|| {
+            let alike =
+                |c: &&Column| !name.is_empty() && c.name.to_lowercase() == name.to_lowercase();
+            let mut found = self.columns.iter().filter(alike).filter(free);
+            found.next().filter(|_| found.next().is_none())
+        })
     }
 
     pub(super) fn no_such_column(&self, name: &str) -> DataError {
         DataError::NoSuchColumn {
             at: Box::new(Place {
                 file: Some(self.source.clone()),
-                line: Some(self.header_line),
+                line: (self.header_line > 0).then_some(self.header_line),
                 column: None,
                 key: Some(name.to_owned()),
             }),
@@ -155,7 +207,7 @@ impl Table {
     pub(super) fn place(&self, column: &Column, line: usize) -> Box<Place> {
         Box::new(Place {
             file: Some(self.source.clone()),
-            line: Some(line),
+            line: (line > 0).then_some(line),
             column: Some(column.number),
             key: (!column.name.is_empty()).then(|| column.name.clone()),
         })
@@ -176,5 +228,16 @@ impl Table {
             CellProblem::DecimalComma => DataError::DecimalComma { at, found },
             CellProblem::Infinite => DataError::Infinite { at, found },
         })
+    }
+}
+
+/// The only one of several tables.
+fn one(mut tables: Vec<Table>) -> Result<Table, DataError> {
+    match (tables.len(), tables.pop()) {
+        (1, Some(table)) => Ok(table),
+        (count, table) => {
+            let file = table.map(|table| table.source);
+            Err(DataError::Several { at: Box::new(Place { file, ..Place::default() }), count })
+        }
     }
 }

@@ -5,13 +5,16 @@
 //! next factor only; `N/(m s)` needs its parentheses. Derived units are known by their
 //! base units (`N` is `kg m/s^2`).
 //!
-//! Only units of time and angle are converted. A record in mm is *not* silently scaled
-//! to a model in m: [`Relation::Clash`] then says which factor the user has to apply.
+//! Units of time and angle are converted, and so are products of units, such as `N mm`
+//! where `N m` is wanted: nobody writes these by mistake. A record in mm is *not* silently
+//! scaled to a model in m: [`Relation::Clash`] then says which factor the user has to apply.
 
 mod product;
+mod spelling;
 mod symbols;
 
 use product::Product;
+pub(super) use spelling::{known, spelt};
 
 /// Takes `name [unit]` apart; the unit is empty where there is no bracket.
 ///
@@ -41,7 +44,7 @@ pub fn header(text: &str) -> Option<(String, String)> {
 pub enum Relation {
     /// The units are equal, or one of them is not stated.
     Same,
-    /// They differ by units of time or angle.
+    /// They differ by units of time or angle, or are products of units of one quantity.
     Convert(Conversion),
     /// They differ otherwise. `factor` would turn the one into the other, where they
     /// measure the same quantity.
@@ -51,7 +54,7 @@ pub enum Relation {
     },
 }
 
-/// Turns values of one unit of time or angle, or a compound of these, into another.
+/// Turns values of one unit into another of the same quantity.
 ///
 /// Numerator and denominator are kept apart so that 100 ms become 0.1 s to the last bit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -104,6 +107,16 @@ pub fn relate(from: &str, to: &str) -> Relation {
     }
     let mut numerator = from_product.numerator * to_product.denominator;
     let mut denominator = from_product.denominator * to_product.numerator;
+    let mut scale = from_product.scale / to_product.scale;
+    if from_product.symbols > 1 && scale.is_finite() && scale > 0.0 {
+        // 1/1000 and not 0.001, so that it stays exact
+        if scale < 1.0 {
+            denominator /= scale
+        } else {
+            numerator *= scale
+        }
+        scale = 1.0;
+    }
     for (large, small) in [(numerator, denominator), (denominator, numerator)] {
         let whole = (large / small).round();
         if whole >= 1.0 && (large - whole * small).abs() <= 1e-12 * large {
@@ -112,7 +125,6 @@ pub fn relate(from: &str, to: &str) -> Relation {
             break;
         }
     }
-    let scale = from_product.scale / to_product.scale;
     if !(scale.is_finite() && numerator.is_finite() && denominator.is_finite()) {
         Relation::Clash { factor: None }
     } else if (scale - 1.0).abs() > 1e-9 {

@@ -88,6 +88,16 @@ pub(super) fn number(field: &str) -> Result<f64, CellProblem> {
     }
 }
 
+/// The number in a trimmed cell with one decimal comma and no other mark: `-1,5e3`.
+pub(super) fn with_comma(field: &str) -> Option<f64> {
+    let (whole, rest) = field.split_once(',')?;
+    let digits = rest.starts_with(|c: char| c.is_ascii_digit());
+    if !digits || rest.contains(',') || whole.contains(['.', 'e', 'E']) || rest.contains('.') {
+        return None;
+    }
+    format!("{whole}.{rest}").parse().ok().filter(|value: &f64| value.is_finite())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -121,5 +131,10 @@ mod tests {
         assert_eq!(number("1,5"), Err(CellProblem::DecimalComma));
         assert_eq!(number("1,234.5"), Err(CellProblem::DecimalComma));
         assert_eq!(number("NA"), Err(CellProblem::Text));
+        assert_eq!(with_comma("-1,5e3"), Some(-1500.0));
+        assert_eq!(with_comma(",25"), Some(0.25));
+        for text in ["1.234,5", "1,234.5", "1,2,3", "1,", "1,x", "1e5,2", "1,e5"] {
+            assert_eq!(with_comma(text), None, "{text}");
+        }
     }
 }

@@ -11,11 +11,16 @@ pub(super) struct Product {
     pub numerator: f64,
     pub denominator: f64,
     pub scale: f64,
+    /// How many symbols were multiplied: 2 for `N mm`.
+    pub symbols: usize,
+    /// Whether all of them are known.
+    pub known: bool,
 }
 
 impl Product {
     fn one() -> Self {
-        Self { powers: BTreeMap::new(), numerator: 1.0, denominator: 1.0, scale: 1.0 }
+        let powers = BTreeMap::new();
+        Self { powers, numerator: 1.0, denominator: 1.0, scale: 1.0, symbols: 0, known: true }
     }
 
     pub fn parse(text: &str) -> Option<Self> {
@@ -85,6 +90,8 @@ impl<'a> Reader<'a> {
                     }
                     let parts = symbols::resolve(symbol);
                     let power = self.power()?;
+                    into.symbols += parts.len();
+                    into.known &= parts.iter().all(|part| part.known);
                     // in `kgm2` the power belongs to the metre alone
                     for (k, part) in parts.iter().enumerate() {
                         let power = if k + 1 == parts.len() { power } else { 1 };
@@ -108,6 +115,8 @@ impl<'a> Reader<'a> {
         self.rest = self.rest.strip_prefix(')')?;
         self.depth -= 1;
         let power = sign * self.power()?;
+        into.symbols += inner.symbols;
+        into.known &= inner.known;
         let bases = inner.powers.iter().map(|(base, power)| (base.as_str(), *power));
         into.multiply(bases, (inner.numerator, inner.denominator), inner.scale, power);
         Some(())

@@ -9,8 +9,10 @@ pub(super) struct Part<'a> {
     pub bases: Vec<(&'a str, i32)>,
     /// Scale due to time or angle: numerator and denominator. It is converted.
     pub free: (f64, f64),
-    /// Scale due to anything else. It is not.
+    /// Scale due to anything else. It is not, in a unit of one symbol.
     pub scale: f64,
+    /// Whether the symbol is in the table.
+    pub known: bool,
 }
 
 /// A symbol of the table: names, base units, scale of time or angle, other scale, and
@@ -96,7 +98,7 @@ pub(super) fn resolve(symbol: &str) -> Vec<Part<'_>> {
     // `Nm`, `kNm`, `Nms`: the reading with the fewest prefixes, then the fewest factors
     match split(symbol, &mut Vec::new()) {
         Some((_, parts)) => parts,
-        None => vec![Part { bases: vec![(symbol, 1)], free: ONE, scale: 1.0 }],
+        None => vec![Part { bases: vec![(symbol, 1)], free: ONE, scale: 1.0, known: false }],
     }
 }
 
@@ -104,7 +106,7 @@ pub(super) fn resolve(symbol: &str) -> Vec<Part<'_>> {
 fn known(symbol: &str) -> Option<(Part<'static>, bool)> {
     let find = |name: &str| SYMBOLS.iter().find(|(names, ..)| names.contains(&name));
     if let Some((_, bases, free, scale, prefix)) = find(symbol) {
-        let part = Part { bases: bases.to_vec(), free: *free, scale: *scale };
+        let part = Part { bases: bases.to_vec(), free: *free, scale: *scale, known: true };
         return Some((part, *prefix == Has));
     }
     let (_, factor) = PREFIXES.iter().find(|(prefix, _)| symbol.starts_with(*prefix))?;
@@ -114,7 +116,8 @@ fn known(symbol: &str) -> Option<(Part<'static>, bool)> {
     if *prefix != Takes || stem.chars().count() > 3 {
         return None;
     }
-    Some((Part { bases: bases.to_vec(), free: *free, scale: scale * factor }, true))
+    let scale = scale * factor;
+    Some((Part { bases: bases.to_vec(), free: *free, scale, known: true }, true))
 }
 
 /// Splits a run of letters into known symbols, none of them twice: one writes `m2`, not

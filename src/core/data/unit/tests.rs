@@ -77,10 +77,7 @@ fn other_clashes_name_the_factor_where_there_is_one() {
     for (from, to, expected) in [
         ("mm", "m", 1e-3),
         ("kN", "N", 1e3),
-        ("km/h", "m/s", 1.0 / 3.6),
         ("rpm", "rad/s", 2.0 * PI / 60.0),
-        ("Nmm", "Nm", 1e-3),
-        ("mNm", "Nm", 1e-3),
         ("bar", "Pa", 1e5),
         ("%", "1", 0.01),
         ("g", "kg", 1e-3),
@@ -94,6 +91,41 @@ fn other_clashes_name_the_factor_where_there_is_one() {
     for (from, to) in [("V", "m"), ("m", "m/s"), ("Hz", "rad/s"), ("K", "°C"), ("a", "b")] {
         assert_eq!(relate(from, to), Relation::Clash { factor: None }, "{from} to {to}");
     }
+}
+
+#[test]
+fn products_of_units_are_converted() {
+    for (from, to, expected) in [
+        ("km/h", "m/s", 1.0 / 3.6),
+        ("Nmm", "Nm", 1e-3),
+        ("N mm", "N m", 1e-3),
+        ("mNm", "Nm", 1e-3),
+        ("kN m", "N m", 1e3),
+        ("mm/s", "m/s", 1e-3),
+        ("N/mm", "N/m", 1e3),
+        ("N mm s/deg", "N m s/rad", 0.18 / PI),
+        ("kg cm^2", "kg m^2", 1e-4),
+    ] {
+        let got = factor(from, to);
+        assert!((got / expected - 1.0).abs() < 1e-14, "{from} to {to}: {got}");
+    }
+    let Relation::Convert(torque) = relate("N mm", "N m") else { panic!() };
+    assert_eq!(torque.apply(300.0), 0.3);
+    assert!(matches!(relate("N mm", "N"), Relation::Clash { factor: None }));
+}
+
+#[test]
+fn headers_in_other_spellings() {
+    let take = |text| spelt(text).map(|(name, unit)| format!("{name}|{unit}"));
+    assert_eq!(take("torque (N m)").as_deref(), Some("torque|N m"));
+    assert_eq!(take("torque/N m").as_deref(), Some("torque|N m"));
+    assert_eq!(take("speed / (m/s)").as_deref(), Some("speed|m/s"));
+    assert_eq!(take("Time (s)").as_deref(), Some("Time|s"));
+    assert_eq!(take("angle in deg").as_deref(), Some("angle|deg"));
+    for text in ["x (raw)", "a/b", "level (left)", "(s)", "/s", "x", "x/", "x (2)"] {
+        assert_eq!(take(text), None, "{text}");
+    }
+    assert!(known("N m") && known("-") && known("°C") && !known("widgets") && !known("3"));
 }
 
 #[test]
