@@ -44,7 +44,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = file::parse(MODEL, "pendulum.toml", Format::Toml)?;
     // all registered effects at all places; `.only(..)`, `.without(..)`, `.fix(..)` narrow it
     let finding = Diagnosis::of(&model).run(&[monday], Some(&tuesday), &Steps)?;
-    println!("{finding}");
+    println!("{}", lacuna::report::sentences::headline(&finding));
     for cause in &finding.causes {
         for other in &cause.indistinguishable {
             println!("  the data cannot tell it from {other}");

@@ -65,7 +65,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let machine = file::parse(&format!("{MODEL}{magnet}"), "the machine", Format::Toml)?;
     let model = file::parse(MODEL, "the model", Format::Toml)?;
     let finding = Diagnosis::of(&model).run(&[record(&machine)?], None, &())?;
-    println!("{finding}");
+    println!("{}", lacuna::report::sentences::headline(&finding));
     for value in finding.causes.iter().flat_map(|cause| &cause.parameters) {
         println!("  {} = {:.4} {}", value.name, value.value, value.unit);
     }

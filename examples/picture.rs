@@ -17,6 +17,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let finding = Diagnosis::of(&model).run(&[record("est")?], Some(&record("test")?), &())?;
     let picture = Report::of(&finding).picture(0).ok_or("the cause has no curve")?;
     std::fs::write(format!("{folder}/found.svg"), picture)?;
-    println!("{finding}");
+    println!("{}", lacuna::report::sentences::headline(&finding));
     Ok(())
 }

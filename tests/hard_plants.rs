@@ -2,7 +2,7 @@
 //! nothing is left of the record.
 
 use lacuna::data::Record;
-use lacuna::diagnose::{Diagnosis, Finding, Verdict};
+use lacuna::diagnose::{Diagnosis, Finding, Note, Verdict};
 use lacuna::file::Format;
 use rand::{RngExt, SeedableRng};
 
@@ -107,7 +107,7 @@ fn nothing(_: [f64; 2]) -> f64 {
 fn diagnosed(model: &str, record: &Record) -> Finding {
     let system = lacuna::file::parse(model, "held_up.toml", Format::Toml).unwrap();
     let finding = Diagnosis::of(&system).run(std::slice::from_ref(record), None, &()).unwrap();
-    assert!(finding.remarks[0].contains("does not forget"), "{:?}", finding.remarks);
+    assert!(matches!(finding.notes[0], Note::Stretches { .. }), "{:?}", finding.notes);
     finding
 }
 
@@ -126,7 +126,7 @@ fn names(finding: &Finding, effect: &str, into: &str, (coefficient, value): (&st
     let first = &finding.causes[0];
     assert_eq!((first.effect.as_str(), first.into.as_str()), (effect, into), "{finding}");
     let found = first.parameters.iter().find(|v| v.name == coefficient).unwrap();
-    assert!((found.value / value - 1.0).abs() < 0.03, "{}", first.sentence);
+    assert!((found.value / value - 1.0).abs() < 0.03, "{first:?}");
     assert_eq!(finding.causes.len(), 1, "{finding}");
     assert!(finding.gain.error_removed > 0.98, "{finding}");
 }
@@ -198,7 +198,8 @@ fn what_is_hidden_in_plants_that_do_not_forget() {
             of.values().next().unwrap().rmse / noise
         };
         let (before, after) = (rmse(&finding.before.test), rmse(&finding.after.test));
-        let told: Vec<String> = finding.causes.iter().map(|cause| cause.sentence.clone()).collect();
+        let told: Vec<String> =
+            finding.causes.iter().map(lacuna::report::sentences::cause).collect();
         println!(
             "| {plant} | {effect}, {coefficient} {value} | {} | {} | {before:.1} | {after:.2} |",
             finding.causes[0].effect,

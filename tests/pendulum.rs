@@ -132,7 +132,8 @@ fn a_pendulum_without_friction_is_left_alone() {
 
 #[test]
 fn the_lines_of_rust() -> Result<(), Box<dyn std::error::Error>> {
-    use lacuna::{data::Record, diagnose::Diagnosis, file, report::Report};
+    use lacuna::report::{Report, sentences};
+    use lacuna::{data::Record, diagnose::Diagnosis, file};
 
     let folder = folder("rust");
     write_record(&folder.join("monday.csv"), 2000, 0.05, 4.0, 6);
@@ -141,13 +142,13 @@ fn the_lines_of_rust() -> Result<(), Box<dyn std::error::Error>> {
     let system = file::load("pendulum.toml".as_ref())?;
     let record = Record::csv("monday.csv")?.pick(&["torque"], &["angle"])?;
     let finding = Diagnosis::of(&system).run(&[record], None, &())?;
-    println!("{finding}");
+    println!("{}", sentences::summary(&finding));
     Report::of(&finding).titled("pendulum").write("report.html".as_ref())?;
     file::save(&finding.extended, "extended.toml".as_ref())?;
 
     assert_eq!(finding.causes[0].effect, "coulomb_friction", "{finding}");
     assert!(folder.join("report.html").exists() && folder.join("extended.toml").exists());
-    for line in block("use lacuna::{data::Record").lines() {
+    for line in block("use lacuna::report::{Report, sentences}").lines() {
         assert!(include_str!("pendulum.rs").contains(line.trim()), "not what is run here: {line}");
     }
     Ok(())

@@ -4,6 +4,7 @@ use lacuna::data::{Random, Record};
 use lacuna::diagnose::{LookAlikes, Outlook, Planner, Track, Visibility};
 use lacuna::evaluate::{Init, Simulation};
 use lacuna::file::{Format, parse};
+use lacuna::report::sentences;
 use lacuna::system::System;
 
 /// Two masses as the paper's authors drive them (Hoekstra et al.).
@@ -59,7 +60,7 @@ fn pair<'a>(outlook: &'a Outlook, a: &str, b: &str) -> Option<&'a LookAlikes> {
 #[test]
 fn what_looks_alike_is_said_with_the_experiment_that_tells() {
     let outlook = outlook(10.0, 2000);
-    println!("{outlook}");
+    println!("{}", sentences::outlook(&outlook));
     // the wall's spring is linear and everything else hangs on the stretch: an offset of the
     // force moves both masses as one, which is what an offset of the sensor looks like
     let offsets = pair(&outlook, "bias into force_1", "bias into y").expect("offsets look alike");
@@ -88,7 +89,7 @@ fn what_looks_alike_is_said_with_the_experiment_that_tells() {
             }
         }
     }
-    let text = outlook.to_string();
+    let text = sentences::outlook(&outlook);
     assert!(text.contains("Look alike: ") && text.contains("Experiments that would tell more:"));
 }
 
@@ -133,7 +134,8 @@ fn a_whisper_of_an_input_shows_little() {
     assert!(hidden(&quiet) > hidden(&loud) + 20);
     assert!(cause(&loud, "cubic", "joint_2", Some("stretch_2")).visible);
     assert!(!cause(&quiet, "cubic", "joint_2", Some("stretch_2")).visible);
-    assert!(quiet.to_string().contains("would not show"), "{quiet}");
+    let text = sentences::outlook(&quiet);
+    assert!(text.contains("would not show"), "{text}");
 }
 
 #[test]

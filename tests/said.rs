@@ -5,7 +5,7 @@ use lacuna::data::{FilteredNoise, Record, noise};
 use lacuna::diagnose::{Diagnosis, Finding};
 use lacuna::evaluate::{Init, Simulation};
 use lacuna::file::{Format, parse};
-use lacuna::report::Report;
+use lacuna::report::{Beside, Document, Provenance, Report, sentences};
 use lacuna::system::System;
 
 mod closed_loop;
@@ -64,12 +64,14 @@ fn diagnosed(records: &[Record], only: &[&str]) -> Finding {
 
 /// The finding as its document.
 fn document(finding: &Finding) -> serde_json::Value {
-    serde_json::to_value(finding).unwrap()
+    let beside = Beside { extended_model: "extended.toml", report: "report.html" };
+    let from = Provenance::default();
+    serde_json::from_str(&Document::of(finding, beside, &from).text().unwrap()).unwrap()
 }
 
 /// Whether a remark of the finding has these words.
 fn remarked(finding: &Finding, words: &str) -> bool {
-    finding.remarks.iter().any(|remark| remark.contains(words))
+    sentences::notes(finding).iter().any(|note| note.contains(words))
 }
 
 /// The sections of the report.

@@ -6,9 +6,9 @@ use std::collections::BTreeSet;
 
 use crate::exam::plants::{CART, PENDULUM};
 use crate::exam::{Conditions, Hidden, Plant, USUAL, hidden, names, placed};
-use lacuna::diagnose::{Cause, Diagnosis, Verdict};
+use lacuna::diagnose::{Cause, Diagnosis, Note, Verdict};
 use lacuna::file::{Format, parse, to_toml};
-use lacuna::report::Report;
+use lacuna::report::{Report, sentences};
 
 /// The cart on a spring.
 fn sprung() -> Plant {
@@ -60,7 +60,8 @@ fn a_curve_finds_the_place_and_removes_the_error() {
         assert!(knots.len() >= 7 && knots.len() == values.len(), "{:?}", curve.parameters);
         assert!(knots.windows(2).all(|w| w[0].0 < w[1].0));
         assert!(values.iter().filter(|(_, error)| error.is_some()).count() * 2 > values.len());
-        assert!(curve.sentence.contains("unknown shape"), "{}", curve.sentence);
+        let text = sentences::cause(curve);
+        assert!(text.contains("unknown shape"), "{text}");
         assert!(finding.series.curves.iter().any(|c| c.knots.len() > 4));
         // a model file like any other
         let text = to_toml(&finding.extended).unwrap();
@@ -112,9 +113,10 @@ fn what_depends_on_two_coordinates_is_learned_and_read() {
     let cause = &finding.causes[0];
     assert_eq!(learned(cause), ["rate", "tilt"].into());
     assert!(removed > 0.95, "{removed}");
-    assert!(cause.sentence.starts_with("A learned law of rate and tilt on torque_on_arm"));
+    let text = sentences::cause(cause);
+    assert!(text.starts_with("A learned law of rate and tilt on torque_on_arm"), "{text}");
     let formula = ["sin(2 tilt)", "rate", "resembles -0.0"];
-    assert!(formula.iter().all(|part| cause.sentence.contains(part)), "{}", cause.sentence);
+    assert!(formula.iter().all(|part| text.contains(part)), "{text}");
     let slices = &finding.series.curves[0].slices;
     assert_eq!(slices.len(), 3);
     assert!(Report::of(&finding).html().contains("The law that was learned"));
@@ -138,14 +140,14 @@ fn what_remembers_in_a_way_that_the_library_does_not_is_unexplained_and_shown() 
     let (known, other) = (with(&fixed), with(&[("- c*omega)/J\" },", states)]));
     let record = other.innocent(Conditions { n: 4000, seed: 7, ..USUAL });
     let finding = known.diagnose(&record);
-    println!("{finding}\n{:?} {:?}", finding.verdict, finding.remarks);
+    println!("{finding}\n{:?} {:?}", finding.verdict, finding.notes);
     println!("{} {:?}", names(&finding), finding.left);
     assert_eq!(finding.verdict, Verdict::Unexplained);
     let curve = &finding.series.curves[0];
     assert!(curve.knots.iter().all(|(_, w, e)| w.is_finite() && *e > 0.0));
     if finding.causes.is_empty() {
         assert!(curve.knots.len() > 4);
-        assert!(finding.remarks.iter().any(|said| said.contains("comes a curve of")));
+        assert!(finding.notes.iter().any(|note| matches!(note, Note::Nearest { .. })));
         assert!(Report::of(&finding).html().contains("What comes nearest"));
     }
 }

@@ -62,7 +62,10 @@ fn a_law_of_ones_own_is_named_where_it_was_hidden() {
     let system = plant.system();
     let only = Diagnosis::of(&system).only(&["magnet".into()]);
     let cause = only.run(&[record], None, &()).unwrap().causes.remove(0);
-    assert!(cause.sentence.starts_with("A magnet of tilt on torque_on_arm, "), "{cause:?}");
+    assert!(
+        lacuna::report::sentences::cause(&cause).starts_with("A magnet of tilt on torque_on_arm, "),
+        "{cause:?}"
+    );
     assert_eq!(cause.parameters[0].unit, "N m/rad");
 }
 

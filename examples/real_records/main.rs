@@ -21,6 +21,7 @@ use lacuna::estimate::{estimate, linear};
 use lacuna::evaluate::{Init, Simulation};
 use lacuna::file::{self, Format};
 use lacuna::report::Report;
+use lacuna::report::sentences;
 use lacuna::system::System;
 
 use cases::{Baseline, Case};
@@ -109,7 +110,7 @@ fn told(finding: &Finding) -> String {
         let others: Vec<String> = cause.indistinguishable.iter().map(ToString::to_string).collect();
         let beside =
             if others.is_empty() { String::new() } else { format!(" (or {})", others.join(", ")) };
-        all.push(format!("{}{beside}", cause.sentence));
+        all.push(format!("{}{beside}", sentences::cause(cause)));
     }
-    if all.is_empty() { finding.to_string() } else { all.join("<br>") }
+    if all.is_empty() { sentences::headline(finding) } else { all.join("<br>") }
 }

@@ -6,7 +6,9 @@ use super::args::Check;
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use lacuna::diagnose::{Diagnosis, number};
+use lacuna::diagnose::Diagnosis;
+use lacuna::digits::number;
+use lacuna::report::{cause_document, sentences};
 
 /// Exit status where the data reject the model.
 const REJECTED: u8 = 3;
@@ -25,15 +27,16 @@ pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
         format!("These data do not reject the model (p = {p}, level {}).", args.level)
     });
     let first = checked.first_cause.as_ref();
+    let document_of = |cause| cause_document(cause).map_err(Failure::unwritable);
     if let Some(cause) = first {
-        look.result(&cause.sentence);
+        look.result(&sentences::cause(cause));
     }
     let mut document = json!({
         "schema": 1,
         "rejected": rejected,
         "p_value": checked.p_value,
         "level": args.level,
-        "first_cause": first,
+        "first_cause": first.map(document_of).transpose()?,
     });
     if checked.interrupted {
         document["interrupted"] = json!(true);

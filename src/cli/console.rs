@@ -97,6 +97,13 @@ impl Console {
         }
     }
 
+    /// A remark around a result, for people only.
+    pub fn introduce(&self, text: &str) {
+        if !self.json {
+            self.say(text);
+        }
+    }
+
     /// What only those want to know who ask for more text.
     pub fn detail(&self, text: &str) {
         if self.verbose {

@@ -2,9 +2,9 @@
 
 use super::args::Demo;
 use super::console::Console;
-use super::diagnose::look_for;
+use super::diagnose::{Results, look_for};
 use super::failure::Failure;
-use super::input;
+use super::{input, provenance};
 use lacuna::data::{Record, Table};
 use lacuna::diagnose::Diagnosis;
 use lacuna::file::{Format, parse};
@@ -15,15 +15,20 @@ const MODEL: &str = include_str!("demo/model.toml");
 const EST: &[u8] = include_bytes!("demo/est.csv.gz");
 const TEST: &[u8] = include_bytes!("demo/test.csv.gz");
 
-pub fn run(args: &Demo, look: &Console) -> Result<u8, Failure> {
+pub fn run(args: &Demo, seed: u64, look: &Console) -> Result<u8, Failure> {
     let system = parse(MODEL, "demo/model.toml", Format::Toml)?;
     let want = input::want(&system)?;
     let read = |bytes: &[u8], name: &str| -> Result<Record, Failure> {
         Ok(Table::read(bytes, name)?.record_for(&want)?.0)
     };
     let (records, test) = ([read(EST, "demo/est.csv")?], read(TEST, "demo/test.csv")?);
-    look.say("Two masses between springs, pushed at the first and measured at the second.");
-    look.say("The model knows all of it but one thing. What is missing?");
+    look.introduce("Two masses between springs, pushed at the first and measured at the second.");
+    look.introduce("The model knows all of it but one thing. What is missing?");
     let diagnosis = Diagnosis::of(&system);
-    look_for(&diagnosis, &system, &records, Some(&test), "a mass-spring-damper", &args.out, look)
+    let from = provenance::of_this_call(seed)
+        .embedded("model", "demo/model.toml", MODEL.as_bytes())
+        .embedded("data", "demo/est.csv.gz", EST)
+        .embedded("test", "demo/test.csv.gz", TEST);
+    let title = "a mass-spring-damper";
+    look_for(&diagnosis, &records, Some(&test), Results { title, out: &args.out, from }, look)
 }

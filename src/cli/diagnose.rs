@@ -6,14 +6,25 @@ use std::path::Path;
 use super::args::Diagnose as Args;
 use super::console::{Console, print};
 use super::failure::Failure;
-use super::input;
+use super::{input, provenance};
 use lacuna::data::Record;
-pub use lacuna::diagnose::{Diagnosis, Finding, number};
+use lacuna::diagnose::{Diagnosis, Finding};
 use lacuna::file::save_with;
-use lacuna::report::Report;
-use lacuna::system::System;
+use lacuna::report::{Beside, Document, Provenance, Report, sentences};
 
-pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
+/// Files that a diagnosis leaves in its folder.
+const MODEL: &str = "extended.toml";
+const PAGE: &str = "report.html";
+const DOCUMENT: &str = "diagnosis.json";
+
+/// What results are called, where they go, and where they are from.
+pub struct Results<'a> {
+    pub title: &'a str,
+    pub out: &'a Path,
+    pub from: Provenance,
+}
+
+pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;
     let columns = &args.on.columns;
     let records = input::records(&args.on.data, &want, columns, look)?;
@@ -23,6 +34,13 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     }
     let test = args.test.as_ref();
     let test = test.map(|path| input::record(path, &want, columns, look)).transpose()?;
+    let mut from = provenance::with(provenance::of_this_call(seed), "model", &args.on.model)?;
+    for path in &args.on.data {
+        from = provenance::with(from, "data", path)?;
+    }
+    if let Some(path) = &args.test {
+        from = provenance::with(from, "test", path)?;
+    }
     let diagnosis = Diagnosis::of(&system)
         .only(&args.only)
         .without(&args.without)
@@ -30,76 +48,51 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         .max_causes(args.max_causes)
         .init(input::init(args.init));
     let title = args.on.model.display().to_string();
-    look_for(&diagnosis, &system, &records, test.as_ref(), &title, &args.out, look)
+    let results = Results { title: &title, out: &args.out, from };
+    look_for(&diagnosis, &records, test.as_ref(), results, look)
 }
 
 /// Runs a diagnosis, writes its files and says what it found.
 pub fn look_for(
     diagnosis: &Diagnosis<'_>,
-    system: &System,
     records: &[Record],
     test: Option<&Record>,
-    title: &str,
-    out: &Path,
+    results: Results<'_>,
     look: &Console,
 ) -> Result<u8, Failure> {
+    let Results { title, out, from } = results;
     // a folder that cannot be made is better known before the work than after it
     fs::create_dir_all(out).map_err(|error| cannot_write(out, &error))?;
     look.hear_interrupts()?;
     let finding = diagnosis.run(records, test, look)?;
     look.clear();
-    let units: Vec<(String, String)> =
-        system.signals().outputs.iter().map(|s| (s.name.clone(), s.unit.clone())).collect();
-    let header: Vec<String> = finding.to_string().lines().map(str::to_string).collect();
-    save_with(&finding.extended, &out.join(&finding.extended_model), &header)?;
-    let page = out.join(&finding.report);
-    Report::of(&finding).titled(title).write(&page).map_err(|error| cannot_write(&page, &error))?;
-    let document = serde_json::to_string_pretty(&finding)
-        .map_err(|error| Failure::work(format!("the result cannot be written: {error}")))?
-        + "\n";
-    let json = out.join("diagnosis.json");
+    let headline = sentences::headline(&finding);
+    let header: Vec<String> = headline.lines().map(str::to_string).chain(from.same()).collect();
+    save_with(&finding.extended, &out.join(MODEL), &header)?;
+    let page = out.join(PAGE);
+    let report = Report::of(&finding).titled(title).from(&from);
+    report.write(&page).map_err(|error| cannot_write(&page, &error))?;
+    let beside = Beside { extended_model: MODEL, report: PAGE };
+    let document = Document::of(&finding, beside, &from).text().map_err(Failure::unwritable)?;
+    let json = out.join(DOCUMENT);
     fs::write(&json, &document).map_err(|error| cannot_write(&json, &error))?;
-    tell(&finding, &units, out, look);
+    tell(&finding, out, look);
     if look.json {
         print(&document);
     }
     Ok(0)
 }
 
-fn tell(finding: &Finding, units: &[(String, String)], out: &Path, look: &Console) {
+fn tell(finding: &Finding, out: &Path, look: &Console) {
     if finding.interrupted {
         look.result("Interrupted: this is what was known.");
     }
-    look.headline(&finding.to_string());
-    for cause in &finding.causes {
-        let others: Vec<String> = cause.indistinguishable.iter().map(ToString::to_string).collect();
-        if !others.is_empty() {
-            look.result(&format!(
-                "  the data cannot tell {} from: {}",
-                cause.effect,
-                others.join("; ")
-            ));
-        }
+    look.headline(&sentences::headline(finding));
+    for line in sentences::details(finding) {
+        look.result(&line);
     }
-    for (name, before) in &finding.before.test {
-        let Some(after) = finding.after.test.get(name).filter(|_| !finding.causes.is_empty())
-        else {
-            continue;
-        };
-        let unit = units.iter().find(|(n, _)| n == name).map_or("", |(_, unit)| unit);
-        look.result(&format!(
-            "{name}: test RMSE {} -> {} {unit}",
-            number(before.rmse, None),
-            number(after.rmse, None)
-        ));
-    }
-    for remark in &finding.remarks {
-        look.result(remark);
-    }
-    look.result(&format!(
-        "Wrote {}, {} and diagnosis.json into {} ({:.1} s)",
-        finding.report,
-        finding.extended_model,
+    look.introduce(&format!(
+        "Wrote {PAGE}, {MODEL} and {DOCUMENT} into {} ({:.1} s)",
         out.display(),
         finding.seconds
     ));

@@ -6,7 +6,7 @@ use super::args::Estimate as Args;
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use lacuna::diagnose::number;
+use lacuna::digits::number;
 use lacuna::estimate::{Estimated, estimate_with};
 use lacuna::file::save;
 
@@ -33,7 +33,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     }
     let (before, after) = estimate.nrmse;
     look.result(&format!("NRMSE {before:.4} before, {after:.4} after"));
-    look.result(&format!("Wrote {}", args.out.display()));
+    look.say(&format!("Wrote {}", args.out.display()));
     let mut document = json!({
         "schema": 1,
         "parameters": estimate.parameters,

@@ -39,6 +39,11 @@ impl Failure {
         }
     }
 
+    /// A result that has no JSON.
+    pub fn unwritable(error: serde_json::Error) -> Self {
+        Self::work(format!("the result cannot be written: {error}"))
+    }
+
     /// Something handed in is wrong.
     pub fn input(message: String, place: Place, hint: String) -> Self {
         let pretty = format!("{message}\n  try: {hint}");

@@ -12,7 +12,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::input;
 use lacuna::data::Record;
-use lacuna::diagnose::number;
+use lacuna::digits::number;
 use lacuna::evaluate::{Init, Metrics, Simulation};
 use lacuna::file::{Document, save_with};
 use lacuna::lfr::AugmentedModel;
@@ -206,7 +206,7 @@ impl Done<'_> {
             look.result(&format!("{} steps led nowhere and were taken back.", fit.rollbacks));
         }
         let files = ["model.toml", "weights.json", "history.csv", "report.html"];
-        look.result(&format!("Wrote {} into {}", files.join(", "), out.display()));
+        look.say(&format!("Wrote {} into {}", files.join(", "), out.display()));
         let last = fit.history.iter().find(|epoch| epoch.epoch == fit.epoch);
         let mut document = json!({
             "schema": 1,

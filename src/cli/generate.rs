@@ -6,7 +6,7 @@ use std::path::Path;
 use super::args::Generate as Args;
 use super::console::Console;
 use super::failure::Failure;
-use lacuna::diagnose::number;
+use lacuna::digits::number;
 use lacuna::file::{Document, load};
 use lacuna::study::Generate;
 
@@ -35,7 +35,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
             ));
         }
     }
-    look.result(&format!("Wrote est.csv, test.csv and truth.json into {}", args.out.display()));
+    look.say(&format!("Wrote est.csv, test.csv and truth.json into {}", args.out.display()));
     look.document(&document);
     Ok(0)
 }

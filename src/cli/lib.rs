@@ -19,6 +19,7 @@ mod linear;
 mod list;
 mod no_model;
 mod plan;
+mod provenance;
 mod simulate;
 mod study;
 
@@ -48,8 +49,8 @@ pub fn main() -> ExitCode {
 fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     let seed = args.common.seed;
     match &args.command {
-        Command::Demo(demo) => demo::run(demo, look),
-        Command::Diagnose(diagnose) => diagnose::run(diagnose, look),
+        Command::Demo(demo) => demo::run(demo, seed, look),
+        Command::Diagnose(diagnose) => diagnose::run(diagnose, seed, look),
         Command::Simulate(simulate) => simulate::run(simulate, look),
         Command::Estimate(estimate) => estimate::run(estimate, seed, look),
         Command::Fit(fit) => fit::run(fit, seed, args.common.threads, look),

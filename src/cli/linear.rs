@@ -7,7 +7,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::input;
 use super::no_model::Asked;
-use lacuna::diagnose::number;
+use lacuna::digits::number;
 use lacuna::estimate::{LinearEstimate, LinearParameter, Mode, linear_with};
 use lacuna::file::save;
 
@@ -21,7 +21,7 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     look.clear();
     save(&found.system, &args.out)?;
     tell(&found, look);
-    look.result(&format!("Wrote {}", args.out.display()));
+    look.say(&format!("Wrote {}", args.out.display()));
     let (before, after) = found.nrmse;
     let mut document = json!({
         "schema": 1,

@@ -5,6 +5,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::input;
 use lacuna::diagnose::Planner;
+use lacuna::report::sentences;
 
 pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;
@@ -13,12 +14,12 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     let outlook = Planner::of(&system).fix(&args.fix).run(&records, look)?;
     look.clear();
     for cause in &outlook.causes {
-        look.detail(&cause.line());
+        look.detail(&sentences::visibility(cause));
     }
     for pair in &outlook.look_alikes {
-        look.detail(&pair.line());
+        look.detail(&sentences::pair(pair));
     }
-    look.result(&outlook.to_string());
+    look.result(&sentences::outlook(&outlook));
     let document = serde_json::to_value(&outlook)
         .map_err(|error| Failure::work(format!("the result cannot be written: {error}")))?;
     look.document(&document);

@@ -9,7 +9,7 @@ use super::console::{Console, print};
 use super::failure::Failure;
 use super::input;
 use lacuna::data::Record;
-use lacuna::diagnose::number;
+use lacuna::digits::number;
 use lacuna::evaluate::{Metrics, Simulation};
 use lacuna::fault::Place;
 
@@ -47,7 +47,7 @@ pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
         ));
     }
     if let Some(path) = args.out.as_ref().filter(|_| !piped) {
-        look.result(&format!("Wrote {}", path.display()));
+        look.say(&format!("Wrote {}", path.display()));
     }
     let metrics: Map<String, Value> =
         run.metrics.iter().map(|(name, metrics)| (name.clone(), json!(metrics))).collect();

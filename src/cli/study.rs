@@ -7,7 +7,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::input;
 use lacuna::data::Record;
-use lacuna::diagnose::number;
+use lacuna::digits::number;
 use lacuna::file::Document;
 use lacuna::study::{ExamResult, Inputs, MonteCarlo, StudyResult};
 

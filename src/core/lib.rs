@@ -5,6 +5,7 @@
 extern crate self as lacuna;
 
 pub mod data;
+pub mod digits;
 pub mod effect;
 pub mod evaluate;
 pub mod fault;

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use serde::Serialize;
-
+use super::cause::Cause;
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
-use super::finding::{Cause, Finding, Verdict};
+use super::finding::Verdict;
 use super::records::name_of;
-use super::shown::{InRecord, in_words};
+use super::searched::Searched;
+use super::shown::InRecord;
 use crate::data::Record;
 use crate::evaluate::{Init, Simulation};
 use crate::statistics::rms;
@@ -20,7 +20,7 @@ const RECORDS: usize = 8;
 const SAMPLES: usize = 400;
 
 /// What one of several records shows on its own, where all of them together name no cause.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Alone {
     /// The record: its file, or its number.
     pub record: String,
@@ -34,13 +34,14 @@ impl Diagnosis<'_> {
     /// what only one of them has is a compromise for all that none of them believes.
     pub(super) fn alone(
         &self,
-        finding: &mut Finding,
+        searched: &Searched,
         records: &[Record],
         watch: &dyn Watch,
-    ) -> Result<(), DiagnoseError> {
-        let named = finding.causes.iter().any(|cause| cause.rows.is_none());
+    ) -> Result<Vec<Alone>, DiagnoseError> {
+        let mut found = vec![];
+        let named = searched.causes.iter().any(|cause| !cause.is_data_fault());
         if records.len() < 2 || records.len() > RECORDS || named {
-            return Ok(());
+            return Ok(found);
         }
         let names: Vec<String> = records.iter().enumerate().map(|(i, r)| name_of(r, i)).collect();
         for (record, name) in records.iter().zip(&names) {
@@ -49,7 +50,7 @@ impl Diagnosis<'_> {
             }
             let one = std::slice::from_ref(record);
             let own = self.search(one, None, self.max_causes, watch)?;
-            let first = own.causes.iter().find(|cause| cause.rows.is_none());
+            let first = own.causes.iter().find(|cause| !cause.is_data_fault());
             let (Some(first), Verdict::CausesFound) = (first, own.verdict) else { continue };
             let said: Option<Vec<InRecord>> = records
                 .iter()
@@ -62,12 +63,10 @@ impl Diagnosis<'_> {
                 continue;
             }
             let mut cause = first.clone();
-            let only = in_words(&said, "").unwrap_or_default();
-            finding.remarks.push(format!("{name} on its own: {}{only}", cause.sentence));
             cause.records = Some(said);
-            finding.alone.push(Alone { record: name.clone(), cause });
+            found.push(Alone { record: name.clone(), cause });
         }
-        Ok(())
+        Ok(found)
     }
 
     /// Weight of an extended model against the baseline on one record, see [`InRecord`]; `None`

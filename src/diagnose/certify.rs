@@ -6,7 +6,8 @@
 //! Roeder, *Annals of Statistics* 37, 2009). The false discovery rate over all causes is bounded
 //! whatever their dependence (Benjamini and Yekutieli, *Annals of Statistics* 29, 2001).
 
-use super::finding::{Cause, FalseDiscovery};
+use super::cause::Cause;
+use super::finding::FalseDiscovery;
 use super::score::Scored;
 use crate::statistics::{normal_tail, rms, wald};
 
@@ -66,11 +67,12 @@ fn adjusted(p_values: &[f64]) -> Vec<f64> {
 
 /// What can be promised about the causes in the machine; `None` where there are none.
 pub(crate) fn false_discovery(causes: &[Cause]) -> Option<FalseDiscovery> {
-    let of_the_machine: Vec<&Cause> = causes.iter().filter(|c| c.rows.is_none()).collect();
+    let of_the_machine = causes.iter().filter(|c| !c.is_data_fault());
+    let (of_the_machine, p_values): (Vec<&Cause>, Vec<f64>) =
+        of_the_machine.filter_map(|cause| Some((cause, cause.p_value?))).unzip();
     if of_the_machine.is_empty() {
         return None;
     }
-    let p_values: Vec<f64> = of_the_machine.iter().map(|c| c.p_value).collect();
     let rates = adjusted(&p_values);
     let confirmed: Vec<f64> = rates.iter().copied().filter(|&rate| rate <= LEVEL).collect();
     let others = of_the_machine.iter().zip(&rates).filter(|(_, rate)| **rate > LEVEL);
@@ -80,19 +82,6 @@ pub(crate) fn false_discovery(causes: &[Cause]) -> Option<FalseDiscovery> {
         confirmed: confirmed.len(),
         not_confirmed: others.map(|(c, _)| c.name()).collect(),
     })
-}
-
-impl FalseDiscovery {
-    /// What has to be said of causes that are not confirmed.
-    pub(crate) fn in_words(&self) -> Option<String> {
-        let names = self.not_confirmed.join("; ");
-        (!names.is_empty()).then(|| {
-            format!(
-                "Not confirmed by data that were used for nothing else (false discovery rate above {:.0} %): {names}. A longer test record would tell.",
-                100.0 * self.level
-            )
-        })
-    }
 }
 
 #[cfg(test)]

@@ -1,8 +1,8 @@
 //! Whether data reject a model at all.
 
+use super::cause::Cause;
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
-use super::finding::Cause;
 use crate::data::Record;
 use crate::statistics::normal_tail;
 use crate::watch::Watch;
@@ -26,10 +26,11 @@ impl Diagnosis<'_> {
     /// As [`run`](Self::run).
     pub fn check(&self, records: &[Record], watch: &dyn Watch) -> Result<Checked, DiagnoseError> {
         let finding = self.run(records, None, watch)?;
-        let of_the_model = finding.causes.iter().find(|cause| cause.rows.is_none());
+        let of_the_model = finding.in_the_machine().next();
         // what no name was found for counts by its dependence on the inputs
-        let p_value =
-            of_the_model.map_or_else(|| normal_tail(finding.left.dependence), |c| c.p_value);
+        let p_value = of_the_model
+            .and_then(|cause| cause.p_value)
+            .unwrap_or_else(|| normal_tail(finding.dependence));
         let first_cause = of_the_model.or(finding.causes.first()).cloned();
         Ok(Checked { p_value, first_cause, interrupted: finding.interrupted })
     }

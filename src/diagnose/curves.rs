@@ -44,7 +44,6 @@ pub(crate) fn curves(
                 channel: (cause.into.clone(), cause.units.0.clone()),
                 law: z.into_iter().zip(law).collect(),
                 knots,
-                cloud: vec![],
                 slices: vec![],
             })
         })

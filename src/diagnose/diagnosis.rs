@@ -2,15 +2,21 @@
 
 use std::time::Instant;
 
+use super::alone::Alone;
 use super::dependence::DEPENDS;
+use super::distortion::distortion;
 use super::error::DiagnoseError;
-use super::faults::{Fault, flipped, retimed, strike};
-use super::finding::{Finding, Track};
+use super::faults::{Fault, coarse, flipped, retimed, strike};
+use super::finding::{Finding, RecordFacts, Track};
 use super::library::Allowed;
+use super::note::Note;
+use super::overlap::refuse_overlap;
 use super::prepared::{Prepared, windows};
 use super::records::firsts;
 use super::score::{Counted, TestData};
+use super::searched::{Around, Searched};
 use super::stretches::horizon;
+use super::teller::Source;
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run, Simulation};
 use crate::system::System;
@@ -41,6 +47,14 @@ struct Mended {
     clock: Option<Fault>,
 }
 
+/// What was found before it is put together.
+pub(super) struct Looked {
+    pub searched: Searched,
+    pub faults: Vec<Fault>,
+    pub notes: Vec<Note>,
+    pub alone: Vec<Alone>,
+}
+
 /// Finds what a model's simulation gets wrong on a record, and names it.
 ///
 /// # Example
@@ -52,7 +66,7 @@ struct Mended {
 /// let system = lacuna::file::load("press.toml".as_ref())?;
 /// let record = Record::csv("press.csv")?.pick(&["force"], &["position"])?;
 /// let finding = Diagnosis::of(&system).run(&[record], None, &())?;
-/// println!("{finding}");
+/// println!("{}", lacuna::report::sentences::summary(&finding));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
@@ -129,7 +143,8 @@ impl<'a> Diagnosis<'a> {
     ///
     /// # Errors
     ///
-    /// If model and records do not go together, or the baseline cannot be simulated.
+    /// If model and records do not go together, the baseline cannot be simulated, or the test record
+    /// holds samples of the other records.
     pub fn run(
         &self,
         records: &[Record],
@@ -138,18 +153,34 @@ impl<'a> Diagnosis<'a> {
     ) -> Result<Finding, DiagnoseError> {
         let started = Instant::now();
         self.check_names()?;
+        if let Some(test) = test {
+            refuse_overlap(records, test)?;
+        }
         for record in records {
             self.check_baseline(record)?;
         }
-        let mut finding = match horizon(self.system, records)? {
+        let looked = match horizon(self.system, records)? {
             None => self.in_one_go(records, test, watch)?,
             Some(length) => self.by_stretches(records, test, length, watch)?,
         };
-        finding.coarse(records);
-        finding.interrupted = watch.stopped();
+        let Looked { searched, mut faults, notes, alone } = looked;
+        faults.extend(coarse(&searched.noise_floor, records));
+        let around = Around {
+            faults,
+            notes,
+            alone,
+            distortion: distortion(records),
+            record: RecordFacts {
+                records: records.len(),
+                samples: records.iter().map(Record::len).sum(),
+                sampling_time: records.first().map_or(0.0, |record| record.sampling_time),
+                test_samples: test.map(Record::len),
+            },
+            interrupted: watch.stopped(),
+            seconds: started.elapsed().as_secs_f64(),
+        };
         watch.tell(1.0, "done");
-        finding.seconds = started.elapsed().as_secs_f64();
-        Ok(finding)
+        Ok(searched.finding(around))
     }
 
     /// The diagnosis of records that a free run can follow from end to end.
@@ -158,16 +189,18 @@ impl<'a> Diagnosis<'a> {
         records: &[Record],
         test: Option<&Record>,
         watch: &dyn Watch,
-    ) -> Result<Finding, DiagnoseError> {
-        let mended = self.mended(records, test)?;
-        let mut finding = match &mended.clock {
-            None => self.search(&mended.records, mended.test.as_ref(), self.max_causes, watch)?,
-            Some(fault) => self.clocked(mended.clone(), fault, watch)?,
+    ) -> Result<Looked, DiagnoseError> {
+        let Mended { records, test, mut faults, clock } = self.mended(records, test)?;
+        let searched = match clock {
+            None => self.search(&records, test.as_ref(), self.max_causes, watch)?,
+            Some(clock) => {
+                let (searched, is_clock) = self.clocked(&records, test.as_ref(), &clock, watch)?;
+                faults.extend(is_clock.then_some(clock));
+                searched
+            }
         };
-        self.alone(&mut finding, &mended.records, watch)?;
-        finding.add(&mended.faults);
-        finding.distorted(&mended.records);
-        Ok(finding)
+        let alone = self.alone(&searched, &records, watch)?;
+        Ok(Looked { searched, faults, notes: vec![], alone })
     }
 
     /// Strikes out what instruments made up, and turns a column of the wrong sign.
@@ -200,42 +233,35 @@ impl<'a> Diagnosis<'a> {
 
     /// A record whose clock seems to be wrong: if one cause in the machine explains as much, the
     /// machine is to blame and the clock is another name of that. Parameters that have to move
-    /// whatever the clock says are to blame as well.
+    /// whatever the clock says are to blame as well. Says whether the clock is to blame.
     fn clocked(
         &self,
-        mended: Mended,
+        records: &[Record],
+        test: Option<&Record>,
         fault: &Fault,
         watch: &dyn Watch,
-    ) -> Result<Finding, DiagnoseError> {
-        let test = mended.test.as_ref();
-        let one = self.search(&mended.records, test, 1, watch)?;
+    ) -> Result<(Searched, bool), DiagnoseError> {
+        let one = self.search(records, test, 1, watch)?;
         if one.causes.len() == 1 && one.gain.error_removed >= fault.removed - AS_MUCH {
-            let mut finding = self.search(&mended.records, test, self.max_causes, watch)?;
-            if let Some(first) = finding.causes.first_mut() {
-                first.indistinguishable.push(fault.alternative());
-            }
-            return Ok(finding);
+            let searched = self.search(records, test, self.max_causes, watch)?;
+            return Ok((searched.or_else(fault.alternative()), false));
         }
-        let records: Vec<Record> = mended.records.iter().map(|r| fault.mend(r)).collect();
+        let mended: Vec<Record> = records.iter().map(|r| fault.mend(r)).collect();
         let mended_test = test.map(|record| fault.mend(record));
-        let mut finding = self.search(&records, mended_test.as_ref(), self.max_causes, watch)?;
-        if one.track == Track::ParametersFree && !finding.causes.is_empty() {
-            let mut machine = self.search(&mended.records, test, self.max_causes, watch)?;
-            let nothing_left = machine.left.dependence < DEPENDS;
+        let searched = self.search(&mended, mended_test.as_ref(), self.max_causes, watch)?;
+        if one.track == Track::ParametersFree && !searched.causes.is_empty() {
+            let machine = self.search(records, test, self.max_causes, watch)?;
+            let nothing_left = machine.dependence < DEPENDS;
             let parameters =
-                |of: &Finding| of.causes.iter().filter(|c| c.effect == "parameter").count();
-            let laws = |of: &Finding| of.causes.len() - parameters(of);
+                |of: &Searched| of.causes.iter().filter(|cause| cause.is_parameter()).count();
+            let laws = |of: &Searched| of.causes.len() - parameters(of);
             // parameters that are wrong anyway may make up for a clock, however many it takes
-            let anyway = parameters(&finding) >= SEVERAL && laws(&machine) <= laws(&finding);
-            if nothing_left && (anyway || machine.causes.len() <= finding.causes.len() + 1) {
-                if let Some(first) = machine.causes.first_mut() {
-                    first.indistinguishable.push(fault.alternative());
-                }
-                return Ok(machine);
+            let anyway = parameters(&searched) >= SEVERAL && laws(&machine) <= laws(&searched);
+            if nothing_left && (anyway || machine.causes.len() <= searched.causes.len() + 1) {
+                return Ok((machine.or_else(fault.alternative()), false));
             }
         }
-        finding.add(std::slice::from_ref(fault));
-        Ok(finding)
+        Ok((searched, true))
     }
 
     /// The search for what the model itself gets wrong, on records without faults but spikes.
@@ -245,7 +271,7 @@ impl<'a> Diagnosis<'a> {
         test: Option<&Record>,
         most: usize,
         watch: &dyn Watch,
-    ) -> Result<Finding, DiagnoseError> {
+    ) -> Result<Searched, DiagnoseError> {
         let kept: Vec<Record>;
         let (used, test, share) = match test {
             Some(record) => {
@@ -272,10 +298,10 @@ impl<'a> Diagnosis<'a> {
             }
         };
         watch.tell(0.97, "measuring the gain");
-        let teller = whole.teller();
-        let mut finding = teller.tell(&whole.start, &chosen, other.as_ref(), &test, used)?;
-        finding.place_rows(&whole.joined, &firsts(records));
-        Ok(finding)
+        let firsts = firsts(records);
+        let (start, fixed) = (&whole.start, &self.allowed.fixed);
+        let from = Source { start, test: &test, used, firsts: &firsts, fixed };
+        whole.teller().tell(&chosen, other.as_ref(), &from)
     }
 
     /// Says at which sample a baseline leaves the finite numbers, if it does.

@@ -1,10 +1,10 @@
 //! What periodic inputs that leave lines empty show without any model: odd and even
 //! distortion, and noise, at the same lines.
 
+use std::collections::BTreeMap;
+
 use serde::Serialize;
 
-use super::finding::Finding;
-use super::number;
 use crate::data::Record;
 use crate::statistics::{Averaged, deviation, lines, mean};
 
@@ -58,60 +58,18 @@ pub struct Distortion {
     pub even: Option<AtLines>,
     /// Whole periods that were averaged.
     pub periods: usize,
+    /// Whether the inputs have no mean, so that the operating point is zero.
+    pub about_zero: bool,
 }
 
-impl Finding {
-    /// Says what the first record of enough periods tells of distortion.
-    pub(super) fn distorted(&mut self, records: &[Record]) {
-        let Some((record, lit)) = records.iter().find_map(|r| Some((r, Lit::of(r)?))) else {
-            return;
-        };
-        for output in &record.outputs {
-            let Some(distortion) = lit.distortion(&output.values) else { continue };
-            let unit = match output.unit.as_str() {
-                "" => String::new(),
-                unit => format!(" {unit}"),
-            };
-            self.remarks.extend(in_words(&distortion, &output.name, &unit, lit.centred));
-            self.distortion.insert(output.name.clone(), distortion);
-        }
-    }
-}
-
-/// The sentence of a distortion that is there.
-fn in_words(distortion: &Distortion, name: &str, unit: &str, centred: bool) -> Option<String> {
-    let there = |kind: &Option<AtLines>| kind.clone().filter(|at| at.present);
-    let size = |at: &AtLines| {
-        format!("{}{unit} against noise of {}{unit}", short(at.rms), short(at.noise_rms))
+/// What the first record of enough periods shows of distortion, per output.
+pub(crate) fn distortion(records: &[Record]) -> BTreeMap<String, Distortion> {
+    let Some((record, lit)) = records.iter().find_map(|r| Some((r, Lit::of(r)?))) else {
+        return BTreeMap::new();
     };
-    let about = if centred { "zero" } else { "the operating point" };
-    let odd_law = format!("a law symmetric about {about}, such as dry friction or a cubic spring");
-    match (there(&distortion.odd), there(&distortion.even)) {
-        (Some(odd), None) => {
-            let even = if distortion.even.is_some() { "; no even distortion" } else { "" };
-            Some(format!("Odd distortion of {name}, {}{even}: {odd_law}.", size(&odd)))
-        }
-        (None, Some(even)) => {
-            let odd = if distortion.odd.is_some() { "; no odd distortion" } else { "" };
-            Some(format!(
-                "Even distortion of {name}, {}{odd}: something one-sided or quadratic.",
-                size(&even)
-            ))
-        }
-        (Some(odd), Some(even)) => Some(format!(
-            "Odd distortion of {name}, {}, and even distortion, {}: something one-sided or quadratic; \
-             the odd part is what comes of it within the machine, or {odd_law}.",
-            size(&odd),
-            size(&even)
-        )),
-        (None, None) => None,
-    }
-}
-
-/// Two digits are enough for a level.
-fn short(value: f64) -> String {
-    let size = if value > 0.0 { 10f64.powf(value.log10().floor()) } else { 1.0 };
-    number((value / size * 10.0).round() / 10.0 * size, Some(1.5 * size))
+    let of =
+        |output: &crate::data::Signal| Some((output.name.clone(), lit.distortion(&output.values)?));
+    record.outputs.iter().filter_map(of).collect()
 }
 
 /// Which lines of a record's period its inputs excite.
@@ -204,6 +162,7 @@ impl Lit {
             odd,
             even,
             periods: average.periods,
+            about_zero: self.centred,
         })
     }
 }

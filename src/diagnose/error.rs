@@ -54,6 +54,22 @@ pub enum DiagnoseError {
         /// Samples of a stretch.
         length: usize,
     },
+    /// The test record holds samples that are fitted and chosen on.
+    #[error(
+        "{test}: {count} samples from row {first} on are those of {record} from row {first_of_record} on, and a test needs data that were used for nothing else"
+    )]
+    TestOverlaps {
+        /// Name of the test record.
+        test: String,
+        /// Name of the record.
+        record: String,
+        /// First row of the test record that is shared, from 1.
+        first: usize,
+        /// The same row in the record.
+        first_of_record: usize,
+        /// How many rows are shared.
+        count: usize,
+    },
     /// The extended model could not be written down.
     #[error("the extended model cannot be written: {reason}")]
     Extend {
@@ -77,7 +93,8 @@ impl Explain for DiagnoseError {
             Self::Evaluate(error) => error.place(),
             Self::NothingMeasured { record, .. }
             | Self::Steps { record, .. }
-            | Self::TooUnstable { record, .. } => {
+            | Self::TooUnstable { record, .. }
+            | Self::TestOverlaps { test: record, .. } => {
                 Place { file: Some(record.clone()), ..Place::default() }
             }
             Self::NoEffect { name } | Self::NoParameter { name, .. } => {
@@ -111,6 +128,10 @@ impl Explain for DiagnoseError {
             }
             Self::TooUnstable { .. } => {
                 "take a longer record, or a shorter step: the machine has to be watched while it is held up"
+                    .into()
+            }
+            Self::TestOverlaps { .. } => {
+                "leave --test out, and the last 20 % of the data are kept for it; or record another one"
                     .into()
             }
             Self::Extend { .. } => {

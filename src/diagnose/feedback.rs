@@ -5,7 +5,6 @@ use std::ops::Range;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
-use super::finding::Finding;
 use super::finished::Finished;
 use super::nominal::Nominal;
 use super::problem::{Part, Problem};
@@ -48,38 +47,11 @@ pub struct ClosedLoop {
 }
 
 impl Teller<'_, '_> {
-    /// Says which input reacts most to the outputs, if one does.
-    pub fn feedback(&self, finding: &mut Finding, chosen: &Finished, used: &[Record]) {
+    /// The input that reacts most to the outputs, if one does.
+    pub fn feedback(&self, chosen: &Finished, used: &[Record]) -> Option<ClosedLoop> {
         // what repeats exactly while the noise does not reacts to nothing
-        if used.iter().all(|record| record.periods().is_some()) {
-            return;
-        }
-        let Some(found) = closed_loop(self.problem, self.nominal, &chosen.y) else { return };
-        let names: Vec<&str> = self.joined_outputs();
-        let outputs = names.join(", ");
-        let (input, score) = (&found.input, found.score);
-        let seen = match found.same_sample_only {
-            false => format!(
-                "The input {input} reacts to the output (closed loop): what is left of {outputs} predicts \
-                 what {input} does next (score {score:.1})."
-            ),
-            true => format!(
-                "The input {input} moves with what is left of {outputs} in the same sample (score \
-                 {score:.1}): it reacts to the output without delay (closed loop), or reaches it \
-                 directly, which the model does not have."
-            ),
-        };
-        finding.remarks.push(format!(
-            "{seen} The verdict rests on simulations with the measured input and holds in a closed loop \
-             too; but noise that is fed back biases parameters, and small causes, where it is large \
-             against what drives the loop. A record in which a reference drives the loop strongly, or \
-             one of the open loop, settles it."
-        ));
-        finding.closed_loop = Some(found);
-    }
-
-    fn joined_outputs(&self) -> Vec<&str> {
-        self.problem.base.signals.outputs.iter().map(|s| s.name.as_str()).collect()
+        let repeats = used.iter().all(|record| record.periods().is_some());
+        (!repeats).then(|| closed_loop(self.problem, self.nominal, &chosen.y)).flatten()
     }
 }
 

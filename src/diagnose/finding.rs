@@ -1,15 +1,17 @@
-//! What a diagnosis says: plain data, as `diagnosis.json` holds it.
+//! What a diagnosis found: plain data, built once.
+//!
+//! `report` makes the document `diagnosis.json`, sentences and a page of it.
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::acts::ActsWhere;
 use super::alone::Alone;
+use super::cause::{Alternative, Cause, MissingForce, Withdrawn};
 use super::distortion::Distortion;
 use super::feedback::ClosedLoop;
+use super::note::Note;
 use super::regime::Regime;
-use super::shown::InRecord;
 use crate::evaluate::Metrics;
 use crate::system::System;
 
@@ -35,85 +37,6 @@ pub enum Track {
     ParametersTrusted,
     /// They were re-estimated.
     ParametersFree,
-}
-
-/// A value with its uncertainty.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Value {
-    /// Name of the effect's parameter.
-    pub name: String,
-    /// Value.
-    pub value: f64,
-    /// Standard error; `None` where the data do not say.
-    pub std_error: Option<f64>,
-    /// Unit.
-    pub unit: String,
-}
-
-/// Another explanation.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Alternative {
-    /// Effect.
-    pub effect: String,
-    /// Where it enters.
-    pub into: String,
-    /// What it depends on.
-    pub of: Option<String>,
-    /// Share of the removable error that it removes in place of the headline.
-    pub error_removed: f64,
-}
-
-impl std::fmt::Display for Alternative {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} into {}", self.effect, self.into)?;
-        self.of.as_ref().map_or(Ok(()), |of| write!(f, " of {of}"))
-    }
-}
-
-/// A named cause.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Cause {
-    /// Effect.
-    pub effect: String,
-    /// Where it enters.
-    pub into: String,
-    /// What it depends on.
-    pub of: Option<String>,
-    /// Further channels that it enters.
-    pub also_into: Vec<String>,
-    /// Further coordinates that it depends on.
-    pub also_of: Vec<String>,
-    /// The finding in words.
-    pub sentence: String,
-    /// Its numbers.
-    pub parameters: Vec<Value>,
-    /// Probability of as large a share without it, valid although it was chosen among many: from
-    /// data that it was neither fitted to nor chosen on.
-    pub p_value: f64,
-    /// Share of the mean square above the noise floor that it removes when added last, on
-    /// data used neither to fit nor to choose.
-    pub error_removed: f64,
-    /// Explanations that the data cannot tell from it.
-    pub indistinguishable: Vec<Alternative>,
-    /// The next best ones.
-    pub runners_up: Vec<Alternative>,
-    /// Part of its coordinate's range in which it acts, where it is silent in the rest.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub acts_where: Option<ActsWhere>,
-    /// What each record says of it, where there are several.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub records: Option<Vec<InRecord>>,
-    /// Rows of the record concerned, 1 being the first sample; only for faults of the data.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rows: Option<Vec<usize>>,
-}
-
-impl Cause {
-    /// Effect, channel and coordinate in words.
-    pub(crate) fn name(&self) -> String {
-        let of = self.of.as_ref().map_or_else(String::new, |of| format!(" of {of}"));
-        format!("{} into {}{of}", self.effect, self.into)
-    }
 }
 
 /// How many of the named causes may be false.
@@ -198,6 +121,9 @@ pub struct NotFound {
     pub unit: String,
     /// Share of the effect that parameters and initial states cannot imitate.
     pub kappa: f64,
+    /// Whether this record would have shown it at a size that is no larger than what drives its
+    /// place anyway.
+    pub visible: bool,
 }
 
 /// One line of the ranking of candidates before any refit.
@@ -215,28 +141,50 @@ pub struct Ranked {
     pub score: f64,
 }
 
-/// What is left after all causes.
+/// What the extended model leaves of one output.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Left {
-    /// Ljung-Box statistic on 20 lags as a normal score, per output.
-    pub whiteness: BTreeMap<String, f64>,
-    /// Score that it still depends on the inputs.
-    pub dependence: f64,
+    /// RMS of the residual over the standard deviation of the noise; `None` where the noise is not
+    /// known.
+    pub ratio_to_noise: Option<f64>,
+    /// Whether it has no memory (Ljung and Box, Biometrika 65, 1978, on 20 lags).
+    pub white: bool,
+    /// Score of that test: about normal where it is white.
+    pub score: f64,
 }
 
-/// Everything a diagnosis says.
+/// How much was recorded.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct RecordFacts {
+    /// Records that were fitted and chosen on.
+    pub records: usize,
+    /// Their samples, all together.
+    pub samples: usize,
+    /// Sampling time in s.
+    pub sampling_time: f64,
+    /// Samples of a test record of its own; `None` where the last part of the records is the test.
+    pub test_samples: Option<usize>,
+}
+
+/// Everything a diagnosis found.
 #[derive(Debug, Clone, Serialize)]
 pub struct Finding {
-    /// Version of this form.
-    pub schema: u32,
     /// What came out.
     pub verdict: Verdict,
+    /// Probability of the verdict; `None` where hypotheses were not compared by it.
+    pub verdict_probability: Option<f64>,
     /// Causes in order of discovery.
     pub causes: Vec<Cause>,
+    /// Causes that the test record refutes.
+    pub withdrawn: Vec<Withdrawn>,
     /// Which track was chosen.
     pub track: Track,
-    /// The other one.
-    pub other_track: OtherTrack,
+    /// The other one, if it was searched.
+    pub other_track: Option<OtherTrack>,
+    /// Parameters that were supposed right: held by the model or by the call.
+    pub held: Vec<String>,
+    /// How much was recorded.
+    pub record: RecordFacts,
     /// Noise per output.
     pub noise_floor: BTreeMap<String, NoiseFloor>,
     /// Figures of the baseline.
@@ -248,12 +196,12 @@ pub struct Finding {
     pub false_discovery: Option<FalseDiscovery>,
     /// What was gained.
     pub gain: Gain,
-    /// File of the extended model.
-    pub extended_model: String,
-    /// File of the report.
-    pub report: String,
-    /// What is left.
-    pub left: Left,
+    /// What is left, per output.
+    pub left: BTreeMap<String, Left>,
+    /// Score that what is left still depends on the inputs.
+    pub dependence: f64,
+    /// The missing force at each channel, largest first.
+    pub missing: Vec<MissingForce>,
     /// Ranking of the first screen.
     pub ranking: Vec<Ranked>,
     /// What was looked for and not found.
@@ -265,13 +213,14 @@ pub struct Finding {
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub regime: BTreeMap<String, Regime>,
     /// What single ones of several records show, where all together name no cause.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip)]
     pub alone: Vec<Alone>,
     /// The input that reacts to the outputs, if one does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closed_loop: Option<ClosedLoop>,
-    /// Things worth knowing, in words.
-    pub remarks: Vec<String>,
+    /// What else is worth knowing.
+    #[serde(skip)]
+    pub notes: Vec<Note>,
     /// Whether somebody stopped the search.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub interrupted: bool,
@@ -283,6 +232,30 @@ pub struct Finding {
     /// Series for the report.
     #[serde(skip)]
     pub series: Series,
+}
+
+impl Finding {
+    /// Unit of an output, empty where it has none.
+    pub fn unit(&self, output: &str) -> &str {
+        let of = self.series.outputs.iter().find(|(name, _)| name == output);
+        of.map_or("", |(_, unit)| unit)
+    }
+
+    /// Causes in the machine, faults of the data apart.
+    pub fn in_the_machine(&self) -> impl Iterator<Item = &Cause> {
+        self.causes.iter().filter(|cause| !cause.is_data_fault())
+    }
+}
+
+/// The causes by name; sentences are made by `report`.
+impl std::fmt::Display for Finding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let names: Vec<String> = self.causes.iter().map(Cause::name).collect();
+        match &names[..] {
+            [] => write!(f, "{:?}", self.verdict),
+            names => f.write_str(&names.join("; ")),
+        }
+    }
 }
 
 /// Series that the report draws.
@@ -323,34 +296,6 @@ pub struct Curve {
     pub law: Vec<(f64, f64)>,
     /// Free curve estimated from the data: coordinate, value, standard error.
     pub knots: Vec<(f64, f64, f64)>,
-    /// Estimated force at single samples.
-    pub cloud: Vec<(f64, f64)>,
     /// Of a law of two coordinates: where the other one is held, in words, and the law there.
     pub slices: Vec<(String, Vec<(f64, f64)>)>,
-}
-
-impl std::fmt::Display for Finding {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self.verdict {
-            Verdict::NothingFound => {
-                write!(f, "Nothing found: what the model leaves does not depend on the inputs.")
-            }
-            Verdict::Unexplained => {
-                write!(
-                    f,
-                    "Unexplained: what is left depends on the inputs, and nothing in the library accounts for it."
-                )?;
-                self.causes.iter().try_for_each(|cause| write!(f, "\n{}", cause.sentence))
-            }
-            _ => {
-                for (i, cause) in self.causes.iter().enumerate() {
-                    if i > 0 {
-                        writeln!(f)?;
-                    }
-                    write!(f, "{}", cause.sentence)?;
-                }
-                Ok(())
-            }
-        }
-    }
 }

@@ -1,7 +1,8 @@
 //! Finds what a simulation gets wrong, names it and measures the gain.
 
 use lacuna_core::{
-    data, effect, evaluate, fault, model, optimise, real, register, statistics, system, watch,
+    data, digits, effect, evaluate, fault, model, optimise, real, register, statistics, system,
+    watch,
 };
 use lacuna_plugins as plugins;
 
@@ -10,6 +11,7 @@ mod acts;
 mod alone;
 mod believe;
 mod candidate;
+mod cause;
 mod causes;
 mod certify;
 mod checked;
@@ -19,6 +21,7 @@ mod diagnosis;
 mod distortion;
 mod error;
 mod exchange;
+mod excitation;
 mod faults;
 mod feedback;
 mod finding;
@@ -32,8 +35,12 @@ mod learned;
 mod library;
 mod limits;
 mod measure;
+mod moved;
+mod naming;
 mod nominal;
+mod note;
 mod nuisance;
+mod overlap;
 mod pairs;
 mod places;
 mod plan;
@@ -57,6 +64,7 @@ mod scan;
 mod score;
 mod screen;
 mod search;
+mod searched;
 mod sets;
 mod shapeless;
 mod shown;
@@ -72,21 +80,24 @@ mod tensor;
 mod together;
 mod track;
 mod train;
-mod words;
 
 pub use crate::watch::Watch;
 pub use acts::ActsWhere;
 pub use alone::Alone;
+pub use cause::{
+    Alternative, Cause, ColumnFault, ExplainedBy, FoundShape, LawPart, MissingForce, Onset, Site,
+    Value, Withdrawn, Wording,
+};
 pub use checked::Checked;
 pub use diagnosis::Diagnosis;
 pub use distortion::{AtLines, Distortion};
 pub use error::DiagnoseError;
 pub use feedback::ClosedLoop;
 pub use finding::{
-    Alternative, Cause, Curve, FalseDiscovery, Finding, Gain, Left, Moved, NoiseFloor, NotFound,
-    OtherTrack, Ranked, Scores, Series, Track, Value, Verdict,
+    Curve, FalseDiscovery, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack, Ranked,
+    RecordFacts, Scores, Series, Track, Verdict,
 };
+pub use note::Note;
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
 pub use regime::Regime;
 pub use shown::InRecord;
-pub use words::number;

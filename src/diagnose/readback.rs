@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::cause::FoundShape;
 use super::curves::curves;
 use super::finding::Curve;
 use super::finished::Finished;
@@ -9,7 +10,7 @@ use super::nominal::Nominal;
 use super::problem::{Added, Grain, Model, Problem};
 use super::teller::Teller;
 use super::train::value;
-use super::words::{number, percent};
+use crate::digits::number;
 use crate::effect::View;
 use crate::plugins::effects::network::Network;
 use crate::statistics::{dot, rms};
@@ -61,25 +62,6 @@ impl Reading {
         let [only] = &self.terms[..] else { return None };
         let (effect, of) = only.shape.as_ref()?;
         Some((*effect, of.as_deref()))
-    }
-
-    /// The formula as text.
-    pub fn formula(&self) -> String {
-        let mut text = String::new();
-        for term in &self.terms {
-            let (sign, size) = (term.coefficient < 0.0, number(term.coefficient.abs(), None));
-            text += match (text.is_empty(), sign) {
-                (true, true) => "-",
-                (true, false) => "",
-                (false, true) => " - ",
-                (false, false) => " + ",
-            };
-            text += &size;
-            if !term.text.is_empty() {
-                text += &format!(" {}", term.text);
-            }
-        }
-        text
     }
 }
 
@@ -264,27 +246,14 @@ impl Teller<'_, '_> {
         all
     }
 
-    /// The sentence of a learned law.
-    pub fn learned_in_words(&self, model: &Model, index: usize, share: f64) -> String {
-        let cause = &model.added[index].cause;
-        let unit = match cause.units.0.as_str() {
-            "" => String::new(),
-            unit => format!(" {unit}"),
-        };
-        let of = cause.coordinates().join(" and ");
+    /// What is known of a learned law.
+    pub fn found_law(&self, model: &Model, index: usize) -> FoundShape {
         let reading = read(self.problem, model, index);
         let most = reading.as_ref().map_or(0.0, |reading| reading.most);
-        let alike = match reading.filter(|reading| !reading.terms.is_empty()) {
-            Some(read) => {
-                format!("it resembles {} ({} of it)", read.formula(), percent(read.share))
-            }
-            None => "no formula of one or two terms is like it".into(),
-        };
-        format!(
-            "A learned law of {of} on {}, up to {}{unit}, explains {} of the removable error; {alike}.",
-            cause.into,
-            number(most, None),
-            percent(share)
-        )
+        let formula = reading.map_or((vec![], 0.0), |reading| {
+            let terms = reading.terms.into_iter().map(|term| (term.coefficient, term.text));
+            (terms.collect(), reading.share)
+        });
+        FoundShape::Learned { most, formula }
     }
 }

@@ -3,7 +3,6 @@
 use std::ops::Range;
 
 use super::error::DiagnoseError;
-use super::finding::Finding;
 use crate::data::Record;
 use crate::evaluate::{drive, measured};
 use crate::model::Signals;
@@ -31,16 +30,13 @@ pub(crate) fn firsts(records: &[Record]) -> Vec<usize> {
     counted.collect()
 }
 
-impl Finding {
-    /// Counts the rows of faults, which are rows of joined records, as rows of all records one
-    /// after the other, where the first sample of each joined one has a number of its own.
-    pub(super) fn place_rows(&mut self, joined: &Joined, firsts: &[usize]) {
-        for row in self.causes.iter_mut().filter_map(|cause| cause.rows.as_mut()).flatten() {
-            let mut spans = joined.spans.iter().zip(firsts);
-            if let Some((span, first)) = spans.find(|(span, _)| span.contains(&(*row - 1))) {
-                *row = *row - span.start + first;
-            }
-        }
+impl Joined {
+    /// Number of a joined sample `k` as a row of all records one after the other, 1 being the first,
+    /// where the first sample of each joined record has a number of its own.
+    pub fn row(&self, k: usize, firsts: &[usize]) -> usize {
+        let mut spans = self.spans.iter().zip(firsts);
+        let own = spans.find(|(span, _)| span.contains(&k));
+        own.map_or(k, |(span, first)| k - span.start + first) + 1
     }
 }
 

@@ -1,13 +1,13 @@
 //! Frequencies that the model's error keeps to.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use serde::Serialize;
 
 use super::dependence::DEPENDS;
-use super::finding::{Finding, Verdict};
+use super::finding::NoiseFloor;
 use super::finished::Finished;
-use super::number;
 use super::problem::Part;
 use super::teller::Teller;
 use crate::statistics::{pieces, spread};
@@ -47,37 +47,38 @@ pub struct Regime {
     pub unit: String,
     /// Share of the error's power above the noise in between.
     pub share: f64,
+    /// Whether nothing that counts lies above it: it has no upper end.
+    pub to_the_top: bool,
+    /// Lower and upper end of where the output itself lives.
+    pub output: [f64; 2],
+    /// Distance of the lines that the ends were read from.
+    pub resolution: f64,
 }
 
 impl Teller<'_, '_> {
-    /// Says where each output's error lives, if it keeps to a part of the frequencies.
-    pub fn regimes(&self, finding: &mut Finding, before: &[Vec<f64>], chosen: &Finished) {
-        if !matches!(finding.verdict, Verdict::CausesFound | Verdict::Unexplained) {
-            return;
-        }
-        let outputs = self.problem.base.signals.outputs.clone();
-        let names = finding.causes.iter().any(|cause| cause.rows.is_none());
-        let is_noise = names && chosen.dependence <= DEPENDS;
-        for (o, signal) in outputs.iter().enumerate() {
-            let floor = finding.noise_floor.get(&signal.name).map_or(0.0, |floor| floor.std);
-            let Some(size) = self.length() else { continue };
+    /// Where each output's error lives, if it keeps to a part of the frequencies. `named` says whether
+    /// a cause in the machine is named.
+    pub fn regimes(
+        &self,
+        named: bool,
+        floors: &BTreeMap<String, NoiseFloor>,
+        before: &[Vec<f64>],
+        chosen: &Finished,
+    ) -> BTreeMap<String, Regime> {
+        let is_noise = named && chosen.dependence <= DEPENDS;
+        let outputs = self.problem.base.signals.outputs.iter().enumerate();
+        let found = outputs.filter_map(|(o, signal)| {
+            let floor = floors.get(&signal.name).map_or(0.0, |floor| floor.std);
+            let size = self.length()?;
             let of = |values: &dyn Fn(usize) -> f64| self.pieces(o, size, values);
             let (y, b, a) = (&self.problem.y[o], &before[o], &chosen.y[o]);
             let output = of(&|k| y[k]);
             let error = of(&|k| y[k] - b[k]);
             let noise = if is_noise { of(&|k| y[k] - a[k]) } else { white(&error, floor) };
             let line = std::f64::consts::TAU / (size as f64 * self.problem.base.sampling_time);
-            let Some(found) = Found::of(&output, &error, &noise) else { continue };
-            let (from, to) = (found.error.start, found.error.end);
-            let regime = Regime {
-                from: if from <= 1 { 0.0 } else { (from as f64 - 0.5) * line },
-                to: (to as f64 - 0.5) * line,
-                unit: "rad/s".into(),
-                share: SHARE,
-            };
-            finding.remarks.push(in_words(&signal.name, &regime, &found, line));
-            finding.regime.insert(signal.name.clone(), regime);
-        }
+            Some((signal.name.clone(), Found::of(&output, &error, &noise)?.regime(line)))
+        });
+        found.collect()
     }
 
     /// Samples of a piece: a power of two, so that there are enough pieces.
@@ -148,6 +149,23 @@ impl Found {
     }
 }
 
+impl Found {
+    /// The same in rad/s, `line` apart.
+    fn regime(&self, line: f64) -> Regime {
+        let (from, to) = (self.error.start, self.error.end);
+        let output = &self.output;
+        Regime {
+            from: if from <= 1 { 0.0 } else { (from as f64 - 0.5) * line },
+            to: (to as f64 - 0.5) * line,
+            unit: "rad/s".into(),
+            share: SHARE,
+            to_the_top: to >= self.lines - 1 || to >= output.end && from < output.end,
+            output: [(output.start as f64 - 0.5).max(0.0) * line, (output.end as f64 - 0.5) * line],
+            resolution: line,
+        }
+    }
+}
+
 /// The fewest lines in a row with 95 % of a power, some lines of which may be below 0; of
 /// several, those with most.
 fn narrowest(power: &[f64]) -> Option<Range<usize>> {
@@ -164,27 +182,6 @@ fn narrowest(power: &[f64]) -> Option<Range<usize>> {
         let best = (0..=power.len() - width).max_by(|&a, &b| held(a).total_cmp(&held(b)))?;
         (held(best) >= SHARE * total).then(|| best..best + width)
     })
-}
-
-fn in_words(name: &str, regime: &Regime, found: &Found, line: f64) -> String {
-    let said = |value: f64| number(value, Some(5.0 * line));
-    let output = &found.output;
-    let top = found.error.end >= found.lines - 1
-        || found.error.end >= output.end && found.error.start < output.end;
-    let place = match (regime.from > 0.0, top) {
-        (false, _) => format!("only below {} rad/s", said(regime.to)),
-        (true, true) => format!("only above {} rad/s", said(regime.from)),
-        (true, false) => {
-            format!("only from {} to {} rad/s", said(regime.from), said(regime.to))
-        }
-    };
-    format!(
-        "What the model gets wrong about {name} lives {place} ({:.0} % of its power above the noise); \
-         {name} itself lives from {} to {} rad/s.",
-        100.0 * SHARE,
-        said((output.start as f64 - 0.5).max(0.0) * line),
-        said((output.end as f64 - 0.5) * line)
-    )
 }
 
 #[cfg(test)]

@@ -1,9 +1,12 @@
 //! What was looked for and not found, and what else is worth knowing.
 
 use super::candidate::{Candidate, Wire};
+use super::cause::Cause;
 use super::dependence::DEPENDS;
-use super::finding::{Cause, NotFound, Track};
+use super::finding::{NotFound, Track};
 use super::finished::Finished;
+use super::note::Note;
+use super::plan::natural;
 use super::problem::Part;
 use super::teller::Teller;
 use crate::statistics::rms;
@@ -39,83 +42,69 @@ impl Teller<'_, '_> {
                 smallest_visible: (!cause.blended() && smallest.is_finite()).then_some(smallest),
                 unit,
                 kappa: scored.kappa,
+                visible: smallest.is_finite() && smallest <= natural(cause),
             });
         }
         entries
     }
 
-    pub fn remarks(&self, chosen: &Finished, causes: &[Cause]) -> Vec<String> {
-        let mut remarks = vec![];
-        if !chosen.fitted.model.added.is_empty() && chosen.dependence > DEPENDS {
-            remarks.push(format!(
-                "What is named is not all of it: what is left still depends on the inputs (score {:.1}).",
-                chosen.dependence
-            ));
+    /// What else is worth knowing of what was found.
+    pub fn notes(&self, chosen: &Finished, causes: &[Cause]) -> Vec<Note> {
+        let mut notes = vec![];
+        let model = &chosen.fitted.model;
+        if !model.added.is_empty() && chosen.dependence > DEPENDS {
+            notes.push(Note::NotAll { score: chosen.dependence });
         }
-        if chosen.fitted.model.added.len() > 1 {
-            remarks.push(
-                "Each set of look-alikes holds for the other causes as named: two causes can jointly imitate two others."
-                    .into(),
-            );
+        if model.added.len() > 1 {
+            notes.push(Note::JointLookAlikes);
         }
         if chosen.found.full {
-            remarks.push("The search stopped at the largest number of causes allowed.".into());
+            notes.push(Note::MostCauses);
         }
         if chosen.is_doubting() {
-            remarks.push(format!(
-                "A parameter is named as wrong, so the standard errors allow for the others to be wrong too (prior: {}). Hold with --fix those that you are sure of.",
-                super::words::percent(super::nuisance::PRIOR)
-            ));
+            notes.push(Note::AllParametersDoubted { prior: super::nuisance::PRIOR });
         }
-        let bound = |effect: &str| matches!(effect, "coulomb_friction" | "stribeck_friction");
-        for cause in causes.iter().filter(|c| bound(&c.effect)) {
-            let width = cause.parameters.iter().find(|v| v.name == "width");
+        // causes begin with those that were added to the model
+        for (added, cause) in model.added.iter().zip(causes) {
+            let card = &added.cause.card;
+            let smooth = card.properties.smoothing_width;
+            let width = cause.parameters.iter().find(|v| smooth == Some(v.name.as_str()));
             if let Some(width) = width.filter(|w| w.std_error.is_none_or(|e| e > 0.5 * w.value)) {
-                remarks.push(format!(
-                    "The record does not resolve the width of the friction on {}: it is at most about {}.",
-                    cause.into,
-                    super::words::number(width.value + 2.0 * width.std_error.unwrap_or(0.0), None)
-                ));
+                notes.push(Note::WidthUnresolved {
+                    into: cause.into.clone(),
+                    at_most: width.value + 2.0 * width.std_error.unwrap_or(0.0),
+                    unit: width.unit.clone(),
+                });
             }
         }
-        for added in &chosen.fitted.model.added {
+        for added in &model.added {
             let cause = &added.cause;
             if let Wire::Stage(route) = &cause.wire
-                && bound(cause.effect)
+                && cause.card.properties.smoothing_width.is_some()
                 && keeps_its_sign(self.nominal.series(route.source))
             {
-                remarks.push(format!(
-                    "{} keeps its sign: while it moves, dry friction on {} looks like an offset; only rest, starts and stops tell them apart.",
-                    cause.of.as_deref().unwrap_or("The velocity"),
-                    cause.into
-                ));
+                notes.push(Note::KeepsItsSign { into: cause.into.clone(), of: cause.of.clone() });
             }
         }
-        remarks
+        notes
     }
 }
 
-/// Says where parameters make up for each other: each that is named, taken back alone, costs little
-/// of the share `removed`.
-pub(crate) fn made_up_for(track: Track, causes: &[Cause], removed: f64) -> Option<String> {
-    let mut named = causes.iter().filter(|c| c.rows.is_none()).peekable();
+/// Where parameters make up for each other: each that is named, taken back alone, costs little of the
+/// share `removed`.
+pub(crate) fn made_up_for(track: Track, causes: &[Cause], removed: f64) -> Option<Note> {
+    let mut named = causes.iter().filter(|c| !c.is_data_fault()).peekable();
     if track != Track::ParametersFree || named.peek().is_none() || removed <= 0.0 {
         return None;
     }
     let mut shares = 0.0;
     for cause in named {
-        if cause.effect != "parameter" {
+        if !cause.is_parameter() {
             return None;
         }
         shares += cause.error_removed;
     }
-    (shares < 0.5 * removed).then(|| {
-        format!(
-            "The extended model removes {} of the removable error; without what is named, the other parameters would make up for all but {} of that. The record tells that parameters are wrong, hardly which: hold with --fix those that you are sure of.",
-            super::words::percent(removed),
-            super::words::percent(shares / removed),
-        )
-    })
+    (shares < 0.5 * removed).then(|| Note::ParametersMakeUp { removed, each: shares / removed })
 }
 
 /// Whether a series goes to one side of 0 only, but for a fiftieth of its largest value.
@@ -127,40 +116,28 @@ fn keeps_its_sign(series: &[f64]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::{Cause, Track, keeps_its_sign, made_up_for};
+    use super::{Cause, Note, Track, keeps_its_sign, made_up_for};
+    use crate::cause::{ColumnFault, Site, Wording};
+    use crate::causes::of_column;
 
-    fn cause(effect: &str, error_removed: f64) -> Cause {
-        Cause {
-            effect: effect.into(),
-            into: "inertia".into(),
-            of: None,
-            also_into: vec![],
-            also_of: vec![],
-            sentence: String::new(),
-            parameters: vec![],
-            p_value: 0.0,
-            error_removed,
-            indistinguishable: vec![],
-            runners_up: vec![],
-            acts_where: None,
-            records: None,
-            rows: None,
-        }
+    fn cause(site: Site, error_removed: f64) -> Cause {
+        let fault = of_column("parameter", "inertia", ColumnFault::SwappedSign, vec![], vec![]);
+        let wording = Wording { site, ..Wording::default() };
+        Cause { error_removed, rows: None, wording, ..fault }
     }
 
     #[test]
-    fn parameters_that_make_up_for_each_other_are_said_to() {
-        let said = |track, causes: &[Cause]| made_up_for(track, causes, 0.99);
-        let hardly = [cause("parameter", 0.001), cause("parameter", 0.01)];
-        let text = said(Track::ParametersFree, &hardly).unwrap();
-        assert!(
-            text.contains("99.0 %") && text.contains("but 1 %") && text.contains("--fix"),
-            "{text}"
-        );
-        assert_eq!(said(Track::ParametersTrusted, &hardly), None);
-        assert_eq!(said(Track::ParametersFree, &[cause("parameter", 0.9)]), None);
-        assert_eq!(said(Track::ParametersFree, &[cause("drag", 0.1), hardly[0].clone()]), None);
-        assert_eq!(said(Track::ParametersFree, &[]), None);
+    fn parameters_that_make_up_for_each_other_are_noted() {
+        let noted = |track, causes: &[Cause]| made_up_for(track, causes, 0.99);
+        let hardly = [cause(Site::Parameter, 0.001), cause(Site::Parameter, 0.01)];
+        let note = noted(Track::ParametersFree, &hardly).unwrap();
+        let Note::ParametersMakeUp { removed, each } = note else { panic!("{note:?}") };
+        assert!(removed == 0.99 && (each - 0.011 / 0.99).abs() < 1e-12, "{removed} {each}");
+        assert_eq!(noted(Track::ParametersTrusted, &hardly), None);
+        assert_eq!(noted(Track::ParametersFree, &[cause(Site::Parameter, 0.9)]), None);
+        let law = [cause(Site::Channel, 0.1), hardly[0].clone()];
+        assert_eq!(noted(Track::ParametersFree, &law), None);
+        assert_eq!(noted(Track::ParametersFree, &[]), None);
         assert_eq!(made_up_for(Track::ParametersFree, &hardly, 0.0), None);
     }
 

@@ -1,16 +1,17 @@
-//! Free curves in words: which shape of the library they look like, a hint, no verdict; and
-//! which one comes nearest where none is a cause.
+//! Which shape of the library a free curve looks like, a hint, no verdict; and which curve comes
+//! nearest where none is a cause.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::candidate::Candidate;
+use super::cause::FoundShape;
 use super::finding::Curve;
 use super::finished::Finished;
+use super::note::Note;
 use super::problem::Grain;
 use super::sketch::{self, Drawing, Sketch};
 use super::teller::Teller;
-use super::words::{number, percent};
-use crate::effect::{Mechanism, Needs, Role, View, curve};
+use crate::effect::{Mechanism, Needs, Role, ShapeOf, View, curve};
 use crate::register;
 
 /// Values of the coordinate at which curves are compared, in equal shares of its use.
@@ -21,30 +22,16 @@ const ALIKE: f64 = 0.9;
 const BETTER: f64 = 0.7;
 
 impl Teller<'_, '_> {
-    /// The sentence of a curve of unknown shape.
-    pub fn curve_in_words(&self, cause: &Candidate, knobs: &[f64], share: f64) -> String {
+    /// What is known of a curve of unknown shape.
+    pub fn found_curve(&self, cause: &Candidate, knobs: &[f64]) -> FoundShape {
         let most = knobs.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        let unit = match cause.units.0.as_str() {
-            "" => String::new(),
-            unit => format!(" {unit}"),
-        };
-        let of = cause.of.as_deref().filter(|of| *of != cause.into);
-        let of = of.map_or_else(String::new, |of| format!(" of {of}"));
-        let alike = self.resembles(cause, knobs).map_or_else(
-            || "no shape of the library is like it".into(),
-            |(name, share)| format!("`{name}` is most like it ({} of it)", percent(share)),
-        );
-        format!(
-            "A law of unknown shape{of} on {}, up to {}{unit}, explains {} of the removable error; {alike}.",
-            cause.into,
-            number(most, None),
-            percent(share)
-        )
+        let nearest = self.resembles(cause, knobs);
+        FoundShape::Curve { most, nearest: nearest.map(|(name, share)| (name.into(), share)) }
     }
 
     /// The curve that comes nearest to what is left, where none was good enough to be a cause,
-    /// and how near it comes in words.
-    pub fn suspicion(&self, chosen: &Finished) -> Option<(Curve, String)> {
+    /// and how near it comes.
+    pub fn suspicion(&self, chosen: &Finished) -> Option<(Curve, Note)> {
         let model = &chosen.fitted.model;
         let y = self.problem.simulate(model, Grain::Coarse)?;
         let (problem, nominal, nuisance) = (self.problem, self.nominal, &chosen.nuisance);
@@ -55,11 +42,7 @@ impl Teller<'_, '_> {
         }
         let of = cause.of.clone()?;
         let points = sketch::knots_of(&cause).into_iter().zip(values.into_iter().zip(errors));
-        let said = format!(
-            "Nearest to what is left comes a curve of {of} on {}: it predicts {} of it where it was not fitted.",
-            cause.into,
-            percent(share)
-        );
+        let said = Note::Nearest { into: cause.into.clone(), of: of.clone(), share };
         let curve = Curve {
             coordinate: (of, cause.units.1.clone()),
             channel: (cause.into.clone(), cause.units.0.clone()),
@@ -84,7 +67,7 @@ impl Teller<'_, '_> {
             let is_curve = own.mechanism == Mechanism::Law
                 && own.states == 0
                 && !matches!(own.needs, Needs::Time | Needs::Nothing)
-                && ![sketch::NAME, super::surface::NAME].contains(&card.name);
+                && own.properties.shape == ShapeOf::Law;
             if !is_curve {
                 continue;
             }

@@ -4,17 +4,12 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use super::finding::Finding;
-use super::finished::Finished;
 use super::problem::{Grain, Model, Part};
 use super::teller::Teller;
 use crate::statistics::weight;
 
 /// Weight of a model in a mixture above which it is nearer to the truth than the other.
 const NEARER: f64 = 0.5;
-/// What a size means that was fitted to records of which some lack the cause.
-const COMPROMISE: &str =
-    "; its size was fitted to all records: diagnose those that show it on their own";
 
 /// What one record says of a cause.
 ///
@@ -37,27 +32,11 @@ pub struct InRecord {
 }
 
 impl Teller<'_, '_> {
-    /// Says of every cause and every moved parameter which of several records show it.
-    pub fn shown(&self, finding: &mut Finding, chosen: &Finished) {
-        if self.joined.spans.len() < 2 {
-            return;
-        }
-        let model = &chosen.fitted.model;
-        let added = (0..chosen.causes()).map(|index| self.refitted(chosen, &model.without(index)));
-        let parameters = &self.problem.base.signals.parameters;
-        let moved = chosen.moved.iter().map(|moved| {
-            let p = parameters.iter().position(|q| q.name == moved.name)?;
-            self.back(chosen, p, moved.from)
-        });
-        let without: Vec<Option<Model>> = added.chain(moved).collect();
-        for (cause, without) in finding.causes.iter_mut().zip(without) {
-            let bare = without.and_then(|model| self.problem.simulate(&model, Grain::Fine));
-            if let Some(bare) = bare.filter(|_| cause.rows.is_none()) {
-                let records = self.in_records(&bare, &chosen.y);
-                cause.sentence += in_words(&records, COMPROMISE).as_deref().unwrap_or_default();
-                cause.records = Some(records);
-            }
-        }
+    /// What each of several records says of what the extended model, with outputs `with`, has beyond a
+    /// model without one of its causes.
+    pub fn shown(&self, without: &Model, with: &[Vec<f64>]) -> Option<Vec<InRecord>> {
+        let bare = self.problem.simulate(without, Grain::Fine)?;
+        Some(self.in_records(&bare, with))
     }
 
     /// What each record says of what one simulation lacks against another.
@@ -97,23 +76,6 @@ impl InRecord {
     }
 }
 
-/// Where a cause shows, if some records show it and some do not; `more` ends the sentence.
-pub(super) fn in_words(records: &[InRecord], more: &str) -> Option<String> {
-    let those = |shows: Option<bool>| -> Vec<&str> {
-        records.iter().filter(|r| r.shows == shows).map(|r| r.record.as_str()).collect()
-    };
-    let (yes, no, quiet) = (those(Some(true)), those(Some(false)), those(None));
-    if yes.is_empty() || no.is_empty() {
-        return None;
-    }
-    let silent = match quiet.is_empty() {
-        true => String::new(),
-        false => format!(", {} could not show it", quiet.join(", ")),
-    };
-    let (yes, no) = (yes.join(", "), no.join(", "));
-    Some(format!(" It shows in {yes} only (not in {no}{silent}){more}."))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,24 +100,5 @@ mod tests {
         }
         println!("{wrong} of 200 wrong, {quiet} of 100 silent");
         assert!(wrong <= 4 && quiet > 60, "{wrong}, {quiet}");
-    }
-
-    #[test]
-    fn words_where_records_disagree_and_none_where_they_do_not() {
-        let record = |name: &str, shows| InRecord {
-            record: name.into(),
-            weight: Some(1.0),
-            std_error: Some(0.1),
-            shows,
-        };
-        let (a, b) = (record("a.csv", Some(true)), record("b.csv", Some(false)));
-        let said = in_words(&[a.clone(), b.clone(), record("c.csv", None)], "; so").unwrap();
-        assert!(
-            said.contains("in a.csv only (not in b.csv, c.csv could not show it); so."),
-            "{said}"
-        );
-        assert_eq!(in_words(&[a.clone(), a.clone()], ""), None);
-        assert_eq!(in_words(&[b.clone(), b], ""), None);
-        assert_eq!(in_words(&[a, record("c.csv", None)], ""), None);
     }
 }

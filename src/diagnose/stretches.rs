@@ -2,14 +2,15 @@
 //! into stretches short enough to be simulated in one go, each with a start of its own (multiple
 //! shooting: Bock, 1981).
 
-use super::diagnosis::{Diagnosis, FIT, kept_from};
+use super::diagnosis::{Diagnosis, FIT, Looked, kept_from};
 use super::error::DiagnoseError;
 use super::faults::strike;
-use super::finding::Finding;
+use super::note::Note;
 use super::nuisance::SEGMENTS;
 use super::prepared::Prepared;
 use super::records::firsts;
 use super::score::{Counted, TestData};
+use super::teller::Source;
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Run};
 use crate::system::System;
@@ -50,7 +51,7 @@ impl Diagnosis<'_> {
         test: Option<&Record>,
         length: usize,
         watch: &dyn Watch,
-    ) -> Result<Finding, DiagnoseError> {
+    ) -> Result<Looked, DiagnoseError> {
         let (mut used, tested): (Vec<Record>, Vec<Record>) = match test {
             Some(record) => (records.to_vec(), vec![record.clone()]),
             None => records
@@ -78,23 +79,12 @@ impl Diagnosis<'_> {
         let (chosen, other) = prepared.search(&self.allowed, self.max_causes, watch)?;
         watch.tell(0.97, "measuring the gain");
         let test = TestData { records: tested, counted: Counted::All };
-        let (start, other) = (&prepared.start, other.as_ref());
-        let mut finding = prepared.teller().tell(start, &chosen, other, &test, &stretches)?;
         let begin: Vec<usize> = begin.iter().map(|&(r, from)| firsts[r] + from).collect();
-        finding.place_rows(&prepared.joined, &begin);
-        finding.remarks.insert(
-            0,
-            format!(
-                "The model does not forget where it starts: errors grow a hundredfold within \
-                 {length} samples ({} s). The record was cut into stretches of that length, of which \
-                 {count} were used, each with a start fitted to it; all figures are of such \
-                 stretches. Signs of columns and the clock were not checked.",
-                super::words::number(length as f64 * step, None)
-            ),
-        );
-        finding.add(&faults);
-        finding.distorted(records);
-        Ok(finding)
+        let (start, fixed) = (&prepared.start, &self.allowed.fixed);
+        let from = Source { start, test: &test, used: &stretches, firsts: &begin, fixed };
+        let searched = prepared.teller().tell(&chosen, other.as_ref(), &from)?;
+        let notes = vec![Note::Stretches { length, seconds: length as f64 * step, count }];
+        Ok(Looked { searched, faults, notes, alone: vec![] })
     }
 }
 

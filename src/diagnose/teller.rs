@@ -1,15 +1,13 @@
-//! Turns what the search found into plain data.
+//! Turns what a search ended with into plain data.
 
 use std::collections::BTreeMap;
 
 use super::candidate::Wire;
-use super::causes::alternative;
+use super::causes::Scores as By;
 use super::certify::false_discovery;
 use super::dependence::DEPENDS;
 use super::error::DiagnoseError;
-use super::finding::{
-    FalseDiscovery, Finding, Left, NoiseFloor, OtherTrack, Ranked, Scores, Series, Track, Verdict,
-};
+use super::finding::{Left, Moved, NoiseFloor, OtherTrack, Ranked, Scores, Series, Track, Verdict};
 use super::finished::Finished;
 use super::floor::{self, predicted, repeated};
 use super::gain::gain;
@@ -19,18 +17,19 @@ use super::records::Joined;
 use super::refit::{Refit, refit};
 use super::remarks::made_up_for;
 use super::score::{Counted, TestData};
-use super::sketch;
-use super::surface;
+use super::searched::Searched;
 use crate::data::Record;
 use crate::evaluate::Metrics;
 use crate::model::with_parameters;
-use crate::statistics::whiteness;
+use crate::statistics::{rms, whiteness};
 use crate::system::System;
 
 /// Share of the removable error that a curve of unknown shape must remove to explain it.
 const EXPLAINED: f64 = 0.8;
+/// Score of the Ljung-Box test below which a residual counts as white.
+const WHITE: f64 = 3.0;
 
-/// What is told from.
+/// What is reported from.
 pub(crate) struct Teller<'a, 'b> {
     pub system: &'a System,
     pub problem: &'a Problem<'b>,
@@ -38,33 +37,50 @@ pub(crate) struct Teller<'a, 'b> {
     pub joined: &'a Joined,
 }
 
+/// Where findings are from: the records that were used, and those that score.
+pub(crate) struct Source<'a> {
+    pub start: &'a Model,
+    pub test: &'a TestData,
+    pub used: &'a [Record],
+    /// Rows of the first samples of joined records.
+    pub firsts: &'a [usize],
+    /// Parameters that the call holds.
+    pub fixed: &'a [String],
+}
+
 impl Teller<'_, '_> {
-    /// Everything that a diagnosis says.
+    /// Everything that a search says of the machine and its records.
     pub fn tell(
         &self,
-        start: &Model,
         chosen: &Finished,
         other: Option<&Finished>,
-        test: &TestData,
-        used: &[Record],
-    ) -> Result<Finding, DiagnoseError> {
-        let system = self.system;
+        from: &Source<'_>,
+    ) -> Result<Searched, DiagnoseError> {
+        let (system, test) = (self.system, from.test);
         let extended = self.extend(&chosen.fitted.model)?;
         let (before, after) = rayon::join(|| test.score(system), || test.score(&extended));
         let (before, after) = (before?, after?);
-        let y_before = self.problem.simulate(start, Grain::Fine);
+        let y_before = self.problem.simulate(from.start, Grain::Fine);
         let y_before = y_before.unwrap_or_else(|| chosen.y.clone());
         let drives: Vec<&[f64]> = self.joined.drive.inputs.iter().map(Vec::as_slice).collect();
         let off_before = self.off(&y_before);
         let floors = test.floors(system, &before, &off_before, &drives);
-        let mut causes = self.causes(chosen, test, &before, &after, &floors)?;
-        causes.extend(self.moved(chosen, test, &before, &after, &floors)?);
+        // stretches of one record are no records
+        let several = self.joined.spans.len() > 1 && !matches!(test.counted, Counted::All);
+        let by = By {
+            test,
+            before: &before,
+            after: &after,
+            floors: &floors,
+            firsts: from.firsts,
+            several,
+        };
+        let mut causes = self.causes(chosen, &by)?;
         let false_discovery = false_discovery(&causes);
-        let structural = causes.iter().filter(|cause| cause.rows.is_none()).count();
-        causes.extend(self.outliers(chosen));
+        let structural = causes.iter().filter(|cause| !cause.is_data_fault()).count();
+        causes.extend(self.outliers(chosen, from.firsts));
         let gain = gain(&before, &after, &floors);
-        let is_drawn = |name: &str| name == sketch::NAME || name == surface::NAME;
-        let curves_only = causes.iter().all(|c| c.rows.is_some() || is_drawn(&c.effect));
+        let curves_only = causes.iter().all(|c| c.is_data_fault() || c.wording.shape.is_some());
         let verdict = match (structural, causes.len()) {
             (1.., _) if curves_only && gain.error_removed < EXPLAINED => Verdict::Unexplained,
             (0, 0) if chosen.dependence > DEPENDS => Verdict::Unexplained,
@@ -72,71 +88,80 @@ impl Teller<'_, '_> {
             (0, _) => Verdict::DataFault,
             _ => Verdict::CausesFound,
         };
-        let mut remarks = self.remarks(chosen, &causes);
-        remarks.extend(made_up_for(chosen.track, &causes, gain.error_removed));
-        remarks.extend(false_discovery.as_ref().and_then(FalseDiscovery::in_words));
-        let mut series = self.series(chosen, &y_before);
+        let mut notes = self.of_the_record(&y_before);
+        notes.extend(self.notes(chosen, &causes));
+        notes.extend(made_up_for(chosen.track, &causes, gain.error_removed));
         let unknown = verdict == Verdict::Unexplained && causes.is_empty();
-        if let Some((curve, said)) = unknown.then(|| self.suspicion(chosen)).flatten() {
-            series.curves.push(curve);
-            remarks.push(said);
-        }
-        let data_metrics = |y: &[Vec<f64>]| {
-            let names = self.problem.base.signals.outputs.iter();
-            names
-                .enumerate()
-                .filter_map(|(o, s)| {
-                    let measured = self.problem.counted(o, &self.joined.measured[o], Part::All);
-                    let simulated = self.problem.counted(o, &y[o], Part::All);
-                    Metrics::of(&measured, &simulated).map(|m| (s.name.clone(), m))
-                })
-                .collect::<BTreeMap<_, _>>()
+        let nearest = unknown.then(|| self.suspicion(chosen)).flatten();
+        let (curve, note) = nearest.unzip();
+        notes.extend(note);
+        let noise_floor = self.noise_floor(&off_before, &drives, from.used);
+        let regime = match verdict {
+            Verdict::CausesFound | Verdict::Unexplained => {
+                self.regimes(structural > 0, &noise_floor, &y_before, chosen)
+            }
+            _ => BTreeMap::new(),
         };
-        let noise_floor = self.noise_floor(&off_before, &drives, used);
-        let off = self.off(&chosen.y);
-        let left = Left {
-            whiteness: self.per_output(|o| whiteness(&self.problem.counted(o, &off[o], Part::All))),
-            dependence: chosen.dependence,
-        };
-        let mut finding = Finding {
-            schema: 1,
+        Ok(Searched {
             verdict,
             track: chosen.track,
-            other_track: self.other(chosen, other),
-            noise_floor,
-            before: Scores { data: data_metrics(&y_before), test: before.metrics },
-            after: Scores { data: data_metrics(&chosen.y), test: after.metrics },
+            other_track: Some(self.other(chosen, other)),
+            before: Scores { data: self.data_metrics(&y_before), test: before.metrics },
+            after: Scores { data: self.data_metrics(&chosen.y), test: after.metrics },
             false_discovery,
             gain,
-            extended_model: "extended.toml".into(),
-            report: "report.html".into(),
-            left,
+            left: self.left(chosen, &noise_floor),
+            dependence: chosen.dependence,
+            noise_floor,
             ranking: self.ranking(chosen),
             not_found: self.not_found(chosen),
-            distortion: BTreeMap::new(),
-            regime: BTreeMap::new(),
-            alone: vec![],
-            closed_loop: None,
-            remarks,
+            regime,
+            closed_loop: self.feedback(chosen, from.used),
+            notes,
+            held: self.held(from.fixed),
             causes,
-            interrupted: false,
-            seconds: 0.0,
-            series,
+            series: self.series(chosen, &y_before, curve),
             extended,
-        };
-        self.regimes(&mut finding, &y_before, chosen);
-        self.parts(&mut finding, chosen);
-        // stretches of one record are no records
-        if !matches!(test.counted, Counted::All) {
-            self.shown(&mut finding, chosen);
-        }
-        self.feedback(&mut finding, chosen, used);
-        Ok(finding)
+            verdict_probability: None,
+            withdrawn: vec![],
+            missing: vec![],
+        })
     }
 
-    fn per_output(&self, value: impl Fn(usize) -> f64) -> BTreeMap<String, f64> {
+    /// Figures of every output on the data that were fitted and chosen on.
+    fn data_metrics(&self, y: &[Vec<f64>]) -> BTreeMap<String, Metrics> {
         let outputs = self.problem.base.signals.outputs.iter().enumerate();
-        outputs.map(|(o, s)| (s.name.clone(), value(o))).collect()
+        let metrics = outputs.filter_map(|(o, s)| {
+            let measured = self.problem.counted(o, &self.joined.measured[o], Part::All);
+            let simulated = self.problem.counted(o, &y[o], Part::All);
+            Metrics::of(&measured, &simulated).map(|m| (s.name.clone(), m))
+        });
+        metrics.collect()
+    }
+
+    /// What the extended model leaves of every output.
+    fn left(
+        &self,
+        chosen: &Finished,
+        floors: &BTreeMap<String, NoiseFloor>,
+    ) -> BTreeMap<String, Left> {
+        let off = self.off(&chosen.y);
+        let outputs = self.problem.base.signals.outputs.iter().enumerate();
+        let left = outputs.map(|(o, signal)| {
+            let off = self.problem.counted(o, &off[o], Part::All);
+            let score = whiteness(&off);
+            let noise = floors.get(&signal.name).map(|floor| floor.std).filter(|std| *std > 0.0);
+            let ratio_to_noise = noise.map(|std| rms(&off) / std);
+            (signal.name.clone(), Left { ratio_to_noise, white: score < WHITE, score })
+        });
+        left.collect()
+    }
+
+    /// Parameters that are supposed right.
+    fn held(&self, fixed: &[String]) -> Vec<String> {
+        let parameters = self.problem.base.signals.parameters.iter();
+        let held = parameters.filter(|p| p.fixed || fixed.contains(&p.name));
+        held.map(|p| p.name.clone()).collect()
     }
 
     /// The system with a model's parameters and causes.
@@ -191,9 +216,9 @@ impl Teller<'_, '_> {
             track,
             causes: other.map_or_else(Vec::new, |other| {
                 let added = other.fitted.model.added.iter().zip(&other.found.slots);
-                added.map(|(a, _)| alternative(&a.cause, 1.0)).collect()
+                added.map(|(a, _)| a.cause.alternative(1.0)).collect()
             }),
-            parameters_moved: other.map_or_else(Vec::new, |other| other.moved.clone()),
+            parameters_moved: other.map_or_else(Vec::<Moved>::new, |other| other.moved.clone()),
         }
     }
 
@@ -235,7 +260,12 @@ impl Teller<'_, '_> {
         ranked.collect()
     }
 
-    fn series(&self, chosen: &Finished, before: &[Vec<f64>]) -> Series {
+    fn series(
+        &self,
+        chosen: &Finished,
+        before: &[Vec<f64>],
+        nearest: Option<super::finding::Curve>,
+    ) -> Series {
         let signals = &self.problem.base.signals;
         let inputs = signals.inputs.iter().zip(&self.joined.drive.inputs);
         Series {
@@ -248,7 +278,7 @@ impl Teller<'_, '_> {
             segments: self.joined.drive.segments.clone(),
             split: self.problem.samples(Part::Choose).next().unwrap_or(self.problem.len()),
             flagged: chosen.found.spikes.clone(),
-            curves: self.pictures(chosen),
+            curves: self.pictures(chosen).into_iter().chain(nearest).collect(),
         }
     }
 }

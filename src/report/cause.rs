@@ -1,8 +1,10 @@
 //! One cause: its curve, its numbers, what looks like it.
 
 use super::page::{Page, share};
+use super::sentences;
 use super::svg::Figure;
-use crate::diagnose::{Alternative, Cause, Curve, Finding, InRecord, number};
+use crate::diagnose::{Alternative, Cause, Curve, Finding, InRecord};
+use crate::digits::number;
 
 /// The section of what no cause was found for: the curve that comes nearest to it.
 pub fn unexplained(page: &mut Page, finding: &Finding) {
@@ -60,12 +62,12 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
         page.table(&["parameter", "#value", "95 % interval", "unit"], &rows);
     }
     if let Some(acts) = &cause.acts_where {
-        page.element("p", "", &format!("It acts {}.", acts.in_words()));
+        page.element("p", "", &format!("It acts {}.", sentences::acts_where(acts)));
     }
     if let Some(records) = &cause.records {
         shown(page, records);
     }
-    if let Some(rows) = &cause.rows {
+    if let Some(rows) = cause.rows.as_ref().filter(|rows| !rows.is_empty()) {
         let shown: Vec<String> = rows.iter().take(60).map(ToString::to_string).collect();
         let more =
             if rows.len() > 60 { format!(" and {} more", rows.len() - 60) } else { String::new() };
@@ -99,7 +101,7 @@ pub fn alone(page: &mut Page, finding: &Finding) {
     }
     page.heading("Single records");
     for alone in &finding.alone {
-        let said = format!("{} on its own: {}", alone.record, alone.cause.sentence);
+        let said = format!("{} on its own: {}", alone.record, sentences::cause(&alone.cause));
         page.element("p", "", &said);
         shown(page, alone.cause.records.as_deref().unwrap_or_default());
     }

@@ -1,7 +1,8 @@
 //! Odd and even distortion and noise at the lines of a periodic input.
 
 use super::page::Page;
-use crate::diagnose::{AtLines, Finding, number};
+use crate::diagnose::{AtLines, Finding};
+use crate::digits::number;
 
 /// The section, where the record allows it.
 pub fn section(page: &mut Page, finding: &Finding) {

@@ -1,13 +1,16 @@
 //! Turns results into one HTML file that needs nothing else.
 
-use lacuna_core::{data, evaluate};
+use lacuna_core::{data, digits, effect, evaluate};
 use lacuna_diagnose as diagnose;
 use lacuna_learn::train;
 
 mod analysis;
 mod cause;
 mod distortion;
+mod document;
 mod page;
+mod provenance;
+pub mod sentences;
 mod signals;
 pub(crate) mod svg;
 mod tables;
@@ -15,8 +18,11 @@ mod training;
 
 use std::path::Path;
 
-use crate::diagnose::{Finding, Verdict, number};
+use crate::diagnose::{Finding, Verdict};
+use crate::digits::number;
+pub use document::{Beside, Document, cause_document};
 pub use page::Page;
+pub use provenance::{FileUsed, Provenance};
 pub use svg::{Figure, Scale};
 
 pub use training::{Shown, TrainingReport};
@@ -32,12 +38,20 @@ pub use training::{Shown, TrainingReport};
 pub struct Report<'a> {
     finding: &'a Finding,
     title: String,
+    from: Option<&'a Provenance>,
 }
 
 impl<'a> Report<'a> {
     /// The report of a finding.
     pub fn of(finding: &'a Finding) -> Self {
-        Self { finding, title: "Diagnosis".into() }
+        Self { finding, title: "Diagnosis".into(), from: None }
+    }
+
+    /// The same with where it is from: program, command, files, seed, date.
+    #[must_use]
+    pub fn from(mut self, provenance: &'a Provenance) -> Self {
+        self.from = Some(provenance);
+        self
     }
 
     /// The same with a title: what was diagnosed.
@@ -80,8 +94,18 @@ impl<'a> Report<'a> {
         signals::sections(&mut page, &finding.series, finding);
         distortion::section(&mut page, finding);
         tables::sections(&mut page, finding);
+        self.origin(&mut page);
         page.raw(FOOTER);
         page.html(&format!("{} - lacuna", self.title))
+    }
+
+    /// What was recorded, and where the page is from.
+    fn origin(&self, page: &mut Page) {
+        page.heading("Where this is from");
+        page.element("p", "", &sentences::record(&self.finding.record));
+        for line in self.from.map(Provenance::lines).unwrap_or_default() {
+            page.element("p", "note", &line);
+        }
     }
 
     fn headline(&self, page: &mut Page) {
@@ -94,10 +118,10 @@ impl<'a> Report<'a> {
             };
             page.element("h1", "", &what);
             for cause in &finding.causes {
-                page.element("p", "gain", &cause.sentence);
+                page.element("p", "gain", &sentences::cause(cause));
             }
         } else {
-            page.element("h1", "", &finding.to_string());
+            page.element("h1", "", &sentences::headline(finding));
         }
         if finding.causes.is_empty() {
             let note = match finding.verdict {

@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use super::page::{Page, share};
-use crate::diagnose::{Finding, NotFound, Track, number};
+use super::sentences;
+use crate::diagnose::{Finding, NotFound, Track};
+use crate::digits::number;
 use crate::evaluate::Metrics;
 
 /// All sections that are tables.
@@ -87,6 +89,7 @@ fn track_name(track: Track) -> &'static str {
 }
 
 fn other_track(page: &mut Page, finding: &Finding) {
+    let Some(other) = &finding.other_track else { return };
     page.heading("If parameters are treated otherwise");
     page.element(
         "p",
@@ -94,10 +97,9 @@ fn other_track(page: &mut Page, finding: &Finding) {
         &format!(
             "The above was found with {}. With {}:",
             track_name(finding.track),
-            track_name(finding.other_track.track)
+            track_name(other.track)
         ),
     );
-    let other = &finding.other_track;
     if other.causes.is_empty() && other.parameters_moved.is_empty() {
         page.element(
             "p",
@@ -195,7 +197,7 @@ fn not_found(page: &mut Page, finding: &Finding) {
 
 fn left(page: &mut Page, finding: &Finding) {
     page.heading("What is left");
-    let dependence = finding.left.dependence;
+    let dependence = finding.dependence;
     page.element(
         "p",
         "",
@@ -204,13 +206,11 @@ fn left(page: &mut Page, finding: &Finding) {
             if dependence > 3.0 { "it is not only noise" } else { "below 3: it may well be noise" }
         ),
     );
-    for (name, score) in &finding.left.whiteness {
-        let word = if *score < 3.0 { "white" } else { "coloured" };
-        page.element(
-            "p",
-            "note",
-            &format!("Residual of {name}: {word} (Ljung-Box score {score:.1})."),
-        );
+    for (name, left) in &finding.left {
+        page.element("p", "note", &sentences::left(name, left));
+    }
+    if let Some(held) = sentences::held(finding) {
+        page.element("p", "note", &held);
     }
     if let Some(found) = &finding.closed_loop {
         page.element("h3", "", "A closed loop");
@@ -228,7 +228,7 @@ fn left(page: &mut Page, finding: &Finding) {
             ),
         );
     }
-    for remark in &finding.remarks {
-        page.element("p", "", remark);
+    for note in sentences::notes(finding) {
+        page.element("p", "", &note);
     }
 }

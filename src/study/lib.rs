@@ -6,7 +6,7 @@
 //! start's encoder is from the states at several noise levels. An [`Exam`] hides effects in
 //! machines and marks what the diagnosis makes of their records.
 
-use lacuna_core::{data, effect, evaluate, fault, file, model, system, watch};
+use lacuna_core::{data, digits, effect, evaluate, fault, file, model, system, watch};
 use lacuna_diagnose as diagnose;
 use lacuna_learn::{encoder, train};
 use lacuna_report as report;

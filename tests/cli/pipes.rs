@@ -53,8 +53,8 @@ fn quiet_is_quiet_and_nothing_is_coloured() {
     std::fs::write(folder.join("m.toml"), MODEL).unwrap();
     record(&folder, "d.csv", "m.toml", 300, 0.01);
     let loud = run(&folder, "simulate --model m.toml --data d.csv").exits(0);
-    assert!(loud.out.contains("y: RMSE"), "{}", loud.out);
-    assert!(!loud.err.contains('\u{1b}') && !loud.err.contains('\r'));
+    assert!(loud.out.contains("y: RMSE") && loud.err.is_empty(), "{}", loud.err);
+    assert!(!loud.out.contains('\u{1b}') && !loud.out.contains('\r'));
     let quiet = run(&folder, "simulate --model m.toml --data d.csv --quiet --json").exits(0);
     assert_eq!(quiet.err, "");
     assert!(quiet.json()["metrics"]["y"]["rmse"].as_f64().unwrap() < 0.02);

@@ -24,6 +24,8 @@ fn plan_says_what_a_record_tells_and_proposes_more() {
     let told = run(&folder, line).exits(0);
     assert!(told.out.contains("Look alike: "), "{}", told.out);
     assert!(told.out.contains("Experiments that would tell more"), "{}", told.out);
+    // without other text, the result is still there
+    assert_eq!(run(&folder, &format!("{line} --quiet")).exits(0).out, told.out);
     let more = run(&folder, &format!("{line} -v")).exits(0);
     assert!(more.out.contains("correlation") && more.out.len() > told.out.len());
     assert!(run(&folder, "plan --help").exits(0).out.contains("Example:"));

@@ -32,7 +32,7 @@ fn friction_is_odd_and_a_quadratic_spring_even() {
     let friction = "coulomb_friction = { level = -0.5, width = 0.01 }";
     let finding = found(ODD, &hidden("force", "v", friction));
     let said = &document(&finding)["distortion"]["y"];
-    println!("{said:#}\n{:#?}", finding.remarks);
+    println!("{said:#}\n{:#?}", finding.notes);
     assert_eq!((&said["odd"]["present"], &said["even"]["present"]), (&true.into(), &false.into()));
     assert_eq!(said["periods"], 2);
     let (odd, noise) = (&said["odd"]["rms"], &said["odd"]["noise_rms"]);
@@ -42,7 +42,7 @@ fn friction_is_odd_and_a_quadratic_spring_even() {
     assert!(headings(&finding).iter().any(|h| h == SECTION));
 
     let finding = found(ODD, &hidden("force", "p", "quadratic = { coefficient = -2.0 }"));
-    println!("{:#?}", finding.remarks);
+    println!("{:#?}", finding.notes);
     let even = finding.distortion["y"].even.clone().unwrap();
     assert!(even.present && even.rms > 3.0 * even.noise_rms, "{even:?}");
     assert!(remarked(&finding, ": something one-sided or quadratic"));
@@ -83,7 +83,7 @@ fn the_papers_own_record() {
     let finding =
         Diagnosis::of(&system).only(&only).max_causes(1).run(&[record], None, &()).unwrap();
     let distortion = &finding.distortion["y"];
-    println!("{distortion:#?}\n{:#?}", finding.remarks);
+    println!("{distortion:#?}\n{:#?}", finding.notes);
     // cubic springs and dampers only, noise of 0.0238 m
     let (odd, even) = (distortion.odd.clone().unwrap(), distortion.even.clone().unwrap());
     assert!(odd.present && !even.present && distortion.periods == 2);

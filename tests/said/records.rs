@@ -18,7 +18,7 @@ fn named(name: &str, rubs: bool, samples: usize, seed: u64) -> Record {
 /// A diagnosis, told.
 fn found(records: &[Record]) -> Finding {
     let finding = diagnosed(records, &["coulomb_friction", "cubic", "bias"]);
-    println!("{finding}\n{:#?}", finding.remarks);
+    println!("{finding}\n{:#?}", finding.notes);
     finding
 }
 
@@ -61,7 +61,8 @@ fn damping_that_is_off_in_all_records_but_one_is_said_not_to_show_there() {
     let all = shown(cause);
     let with = all[1..].iter().filter(|shows| **shows == Some(true)).count();
     assert!(all[0] == Some(false) && with >= 4, "{:?}", cause.records);
-    assert!(cause.sentence.contains(" only (not in est1.csv"), "{}", cause.sentence);
+    let text = sentences::cause(cause);
+    assert!(text.contains(" only (not in est1.csv"), "{text}");
     assert!(Report::of(&finding).html().contains("<th>record</th>"));
     assert!(finding.alone.is_empty());
 }
@@ -75,7 +76,9 @@ fn friction_in_both_records_is_nothing_to_speak_of() {
         assert!((record.weight.unwrap() - 1.0).abs() < 0.3, "{record:?}");
     }
     assert_eq!(document(&finding)["causes"][0]["records"][1]["record"], "est2.csv");
-    assert!(!cause.sentence.contains("shows in") && document(&finding).get("alone").is_none());
+    assert!(
+        !sentences::cause(cause).contains("shows in") && document(&finding).get("alone").is_none()
+    );
 }
 
 #[test]

@@ -38,7 +38,7 @@ fn slow_part(slow: f64, seed: u64) -> Finding {
 #[test]
 fn an_error_in_the_slow_part_is_placed() {
     let finding = slow_part(1.6, 1);
-    println!("{finding}\n{:#?}\n{:#?}", finding.regime, finding.remarks);
+    println!("{finding}\n{:#?}\n{:#?}", finding.regime, finding.notes);
     let regime = &finding.regime["y"];
     // 0.6/(1 + 2 s) has 95 % of its power below 6.4 rad/s, that under the spectrum of u
     assert!(regime.from == 0.0 && (3.0..9.0).contains(&regime.to), "{regime:?}");
@@ -58,7 +58,7 @@ fn an_error_as_broad_as_the_output_has_no_place() {
     let friction = "coulomb_friction = { level = -0.5, width = 0.01 }";
     let friction = hidden("force", "v", friction);
     let finding = found(&friction, &["extra_mode", "coulomb_friction"], &force(4000, 3), 4);
-    println!("{finding}\n{:#?}", finding.remarks);
+    println!("{finding}\n{:#?}", finding.notes);
     assert!(document(&finding).get("regime").is_none());
     assert!(!headings(&finding).iter().any(|h| h == SECTION));
     // it acts wherever the mass moves
@@ -70,14 +70,14 @@ fn a_stop_acts_in_a_part_of_the_range_and_says_in_which() {
     let stop = "hinge = { coefficient = -40.0, start = 0.5, side = 1.0 }";
     let u = force(4000, 5);
     let finding = found(&hidden("force", "p", stop), &["hinge", "cubic", "quadratic"], &u, 6);
-    println!("{finding}\n{:#?}", finding.remarks);
+    println!("{finding}\n{:#?}", finding.notes);
     let cause = &finding.causes[0];
     let acts = cause.acts_where.clone().expect("a part of the range");
     assert_eq!((cause.effect.as_str(), acts.of.as_str(), acts.unit.as_str()), ("hinge", "p", "m"));
     let above = acts.above.unwrap();
     assert!(acts.below.is_none() && above > 0.48 && above < 0.6, "{acts:?}");
     assert!(acts.share_of_time > 0.005 && acts.share_of_time < 0.4, "{acts:?}");
-    assert!(cause.sentence.contains(" It acts only where p > 0.5"), "{}", cause.sentence);
+    assert!(sentences::cause(cause).contains(" It acts only where p > 0.5"), "{cause:?}");
     let saturation = "saturation = { low = -4.0, high = 4.0 }";
     let finding = found(&hidden("u", "u", saturation), &["saturation", "gain"], &u, 7);
     println!("{finding}");

@@ -159,7 +159,7 @@ impl Explain for SystemError {
             Self::KnobRange { min, max, .. } => format!("use a value from {min} to {max}"),
             Self::NameTwice { .. } => "give one of the two another name".into(),
             Self::SamplingTime(_) | Self::NoSamplingTime => {
-                "write `sampling_time = 0.01` (in s) in the model file, or add a `time` column to the record"
+                "state the record's step in s as `sampling_time` in the model file, or add a `time` column to the record"
                     .into()
             }
             Self::Substeps(_) => "write `integrator = { method = \"rk4\", substeps = 10 }`".into(),

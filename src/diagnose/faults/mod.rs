@@ -4,8 +4,12 @@
 mod column;
 mod rows;
 
-use super::finding::{Alternative, Cause, Finding, Value, Verdict};
-use super::words::{number, percent};
+use std::collections::BTreeMap;
+
+use super::cause::{Alternative, Cause, ColumnFault, Site, Value};
+use super::causes::of_column;
+use super::finding::NoiseFloor;
+use super::naming::title_of;
 use crate::data::Record;
 
 pub(crate) use column::{flipped, retimed};
@@ -37,8 +41,8 @@ pub(crate) enum FaultKind {
     Dropout(f64),
     /// The reading stood still.
     Stuck(f64),
-    /// Coarse steps of the converter.
-    Quantisation(f64),
+    /// Coarse steps of the converter, and their rounding error over the noise.
+    Quantisation { step: f64, over_noise: f64 },
     /// The column has the wrong sign.
     SwappedSign,
     /// The column is late by so many s, early if negative.
@@ -52,7 +56,7 @@ impl FaultKind {
         match self {
             Self::Dropout(_) => "dropout",
             Self::Stuck(_) => "stuck",
-            Self::Quantisation(_) => "quantisation",
+            Self::Quantisation { .. } => "quantisation",
             Self::SwappedSign => "swapped_sign",
             Self::TimeShift(_) => "time_shift",
             Self::SamplingTime(_) => "sampling_time",
@@ -63,80 +67,32 @@ impl FaultKind {
 impl Fault {
     /// The fault as a cause among others.
     pub fn cause(&self) -> Cause {
-        let (into, unit) = (&self.into, &self.unit);
-        let said = |value: f64| number(value, None) + if unit.is_empty() { "" } else { " " } + unit;
-        let count = self.rows.len();
-        let removed = percent(self.removed);
-        let (sentence, value) = match self.kind {
-            FaultKind::Dropout(value) => (
-                format!(
-                    "Dropouts in {into}: {count} samples fell to {} and were left out.",
-                    said(value)
-                ),
-                Some((value, unit.clone())),
-            ),
-            FaultKind::Stuck(value) => (
-                format!(
-                    "A stuck reading of {into}: {count} samples stand at {} while the machine \
-                     moves, and were left out.",
-                    said(value)
-                ),
-                Some((value, unit.clone())),
-            ),
-            FaultKind::Quantisation(step) => (
-                format!(
-                    "Coarse quantisation of {into}: steps of {}, as large as what is left.",
-                    said(step)
-                ),
-                Some((step, unit.clone())),
-            ),
-            FaultKind::SwappedSign => (
-                format!(
-                    "The sign of {into} is swapped, explains {removed} of the removable error."
-                ),
-                None,
-            ),
-            FaultKind::TimeShift(shift) => (
-                format!(
-                    "{into} was recorded {} s {}, explains {removed} of the removable error.",
-                    number(shift.abs(), None),
-                    if shift < 0.0 { "early" } else { "late" }
-                ),
-                Some((shift, "s".into())),
-            ),
-            FaultKind::SamplingTime(step) => (
-                format!(
-                    "The sampling time is {} s, not what is stated, explains {removed} of the \
-                     removable error.",
-                    number(step, None)
-                ),
-                Some((step, "s".into())),
-            ),
+        let unit = &self.unit;
+        let (fault, value) = match self.kind {
+            FaultKind::Dropout(value) => {
+                (ColumnFault::Dropout(value), Some((value, unit.as_str())))
+            }
+            FaultKind::Stuck(value) => (ColumnFault::Stuck(value), Some((value, unit.as_str()))),
+            FaultKind::Quantisation { step, over_noise } => {
+                (ColumnFault::Quantisation(step, over_noise), Some((step, unit.as_str())))
+            }
+            FaultKind::SwappedSign => (ColumnFault::SwappedSign, None),
+            FaultKind::TimeShift(shift) => (ColumnFault::TimeShift(shift), Some((shift, "s"))),
+            FaultKind::SamplingTime(step) => (ColumnFault::SamplingTime(step), Some((step, "s"))),
         };
-        let other = |into: &String| Alternative {
-            effect: self.kind.effect().into(),
-            into: into.clone(),
-            of: None,
-            error_removed: self.removed,
-        };
+        let value = value.map(|(value, unit)| Value {
+            name: "value".into(),
+            value,
+            std_error: None,
+            unit: unit.into(),
+        });
+        let parameters = value.into_iter().collect();
+        let rows = self.rows.iter().map(|k| k + 1).collect();
+        let other = |into: &String| Alternative { into: into.clone(), ..self.alternative() };
         Cause {
-            effect: self.kind.effect().into(),
-            into: into.clone(),
-            of: None,
-            also_into: vec![],
-            also_of: vec![],
-            sentence,
-            parameters: value
-                .into_iter()
-                .map(|(value, unit)| Value { name: "value".into(), value, std_error: None, unit })
-                .collect(),
-            p_value: 1e-9,
             error_removed: self.removed,
             indistinguishable: self.or_in.iter().map(other).collect(),
-            runners_up: vec![],
-            acts_where: None,
-            records: None,
-            rows: Some(self.rows.iter().map(|k| k + 1).collect()),
+            ..of_column(self.kind.effect(), &self.into, fault, parameters, rows)
         }
     }
 
@@ -147,6 +103,9 @@ impl Fault {
             into: self.into.clone(),
             of: None,
             error_removed: self.removed,
+            probability: None,
+            title: title_of(self.kind.effect()),
+            site: Site::Column,
         }
     }
 
@@ -172,40 +131,22 @@ impl Fault {
     }
 }
 
-impl Finding {
-    /// Adds faults of the data: those that explain what the model gets wrong come first, samples
-    /// that were left out last.
-    pub(crate) fn add(&mut self, faults: &[Fault]) {
-        let (explaining, rest): (Vec<&Fault>, Vec<&Fault>) =
-            faults.iter().partition(|fault| fault.explains());
-        self.series.curves.iter_mut().for_each(|curve| curve.cause += explaining.len());
-        let causes = explaining.into_iter().map(Fault::cause);
-        self.causes.splice(0..0, causes);
-        self.causes.extend(rest.into_iter().map(Fault::cause));
-        if !faults.is_empty()
-            && matches!(self.verdict, Verdict::NothingFound | Verdict::Unexplained)
-        {
-            self.verdict = Verdict::DataFault;
-        }
-    }
-
-    /// Says where the steps of a converter are as large as what is left.
-    pub(crate) fn coarse(&mut self, records: &[Record]) {
-        let Some(record) = records.first() else { return };
-        let coarse = |signal: &crate::data::Signal| {
-            let step = rows::converter_step(&signal.values)?;
-            let floor = self.noise_floor.get(&signal.name)?.std;
-            // an evenly spread rounding error has the deviation step / sqrt(12)
-            (step / 12f64.sqrt() > COARSE * floor).then(|| Fault {
-                kind: FaultKind::Quantisation(step),
-                into: signal.name.clone(),
-                unit: signal.unit.clone(),
-                rows: vec![],
-                removed: 0.0,
-                or_in: vec![],
-            })
-        };
-        let faults: Vec<Fault> = record.outputs.iter().filter_map(coarse).collect();
-        self.add(&faults);
-    }
+/// Outputs where the steps of a converter make up a good part of the noise.
+pub(crate) fn coarse(noise: &BTreeMap<String, NoiseFloor>, records: &[Record]) -> Vec<Fault> {
+    let Some(record) = records.first() else { return vec![] };
+    let coarse = |signal: &crate::data::Signal| {
+        let step = rows::converter_step(&signal.values)?;
+        let floor = noise.get(&signal.name)?.std;
+        // an evenly spread rounding error has the deviation step / sqrt(12)
+        let over_noise = step / 12f64.sqrt() / floor;
+        (over_noise > COARSE).then(|| Fault {
+            kind: FaultKind::Quantisation { step, over_noise },
+            into: signal.name.clone(),
+            unit: signal.unit.clone(),
+            rows: vec![],
+            removed: 0.0,
+            or_in: vec![],
+        })
+    };
+    record.outputs.iter().filter_map(coarse).collect()
 }

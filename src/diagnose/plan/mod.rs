@@ -22,7 +22,6 @@ mod look;
 mod outlook;
 mod planning;
 mod visible;
-mod words;
 
 use super::error::DiagnoseError;
 use super::finding::NoiseFloor;
@@ -35,6 +34,8 @@ use crate::evaluate::EvaluateError;
 use crate::statistics::deviation;
 use crate::system::System;
 use crate::watch::Watch;
+
+pub(crate) use visible::natural;
 
 pub use outlook::{Experiment, LookAlikes, Outlook, Supposed, Visibility};
 
@@ -55,7 +56,7 @@ const ENOUGH: f64 = 10.0;
 /// let system = lacuna::file::load("press.toml".as_ref())?;
 /// let record = Record::csv("press.csv")?.pick(&["force"], &["position"])?;
 /// let outlook = Planner::of(&system).run(&[record], &())?;
-/// println!("{outlook}");
+/// println!("{}", lacuna::report::sentences::outlook(&outlook));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]

@@ -101,7 +101,7 @@ impl Planning<'_, '_> {
         if let Some(looks) = with_sensors(problem, start, &asked, nuisance, &sensors) {
             for (sensor, look) in sensors.iter().zip(looks) {
                 let unit = if sensor.unit.is_empty() { "" } else { " " };
-                let size = crate::number(sensor.noise, None);
+                let size = crate::digits::number(sensor.noise, None);
                 let described = format!(
                     "a sensor of {} beside those there are, with noise of {size}{unit}{}",
                     sensor.name, sensor.unit

@@ -12,7 +12,7 @@ pub(super) fn supposed(cause: &Candidate) -> Supposed {
 }
 
 /// The first parameter's size at which an effect is as large as what drives its place anyway.
-fn natural(cause: &Candidate) -> f64 {
+pub(crate) fn natural(cause: &Candidate) -> f64 {
     match (&cause.wire, cause.place) {
         _ if cause.blended() => 1.0,
         (Wire::Parameter(_) | Wire::Drift(_), _) => 100.0 * cause.probe.abs(),

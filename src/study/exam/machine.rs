@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use super::{Case, Machine};
 use crate::StudyError;
 use crate::data::{Random, Record, noise};
-use crate::diagnose::number;
+use crate::digits::number;
 use crate::effect::{Knob, Mechanism, Role};
 use crate::evaluate::Run;
 use crate::generate::{apart, deviation, rms, seed_of};

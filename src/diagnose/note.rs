@@ -1,0 +1,82 @@
+//! What else a diagnosis has to say, as data; `report` makes sentences of it.
+
+/// One thing worth knowing beside the causes.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Note {
+    /// The model does not forget its start: the record was cut into stretches.
+    Stretches {
+        /// Samples of a stretch.
+        length: usize,
+        /// The same in s.
+        seconds: f64,
+        /// Stretches used.
+        count: usize,
+    },
+    /// Inputs that do not move: nothing that depends on them can show.
+    NoExcitation {
+        /// The inputs.
+        inputs: Vec<String>,
+        /// Whether that is all inputs.
+        all: bool,
+    },
+    /// The record has few samples for the numbers that are asked of it.
+    FewSamples {
+        /// Samples that were fitted and chosen on.
+        samples: usize,
+        /// Free parameters and states of the model.
+        unknowns: usize,
+    },
+    /// An output does not complete one period.
+    LessThanAPeriod {
+        /// The output.
+        output: String,
+        /// How often it crosses its mean.
+        crossings: usize,
+    },
+    /// What is left depends on the inputs although causes are named.
+    NotAll {
+        /// Score of the dependence.
+        score: f64,
+    },
+    /// Several causes: each set of look-alikes holds for the others as named.
+    JointLookAlikes,
+    /// The search stopped at the largest number of causes allowed.
+    MostCauses,
+    /// Standard errors allow for all parameters to be wrong.
+    AllParametersDoubted {
+        /// Standard deviation of a parameter that may be wrong, as a share of its value.
+        prior: f64,
+    },
+    /// The width of friction at rest is not resolved.
+    WidthUnresolved {
+        /// Its channel.
+        into: String,
+        /// Upper end of the 95 % interval.
+        at_most: f64,
+        /// Unit.
+        unit: String,
+    },
+    /// The coordinate of friction keeps its sign.
+    KeepsItsSign {
+        /// The channel.
+        into: String,
+        /// The coordinate.
+        of: Option<String>,
+    },
+    /// Parameters that are named make up for each other.
+    ParametersMakeUp {
+        /// Share of the removable error that all remove together.
+        removed: f64,
+        /// Sum of the shares of each, over that.
+        each: f64,
+    },
+    /// No cause was good enough; a curve of this coordinate comes nearest.
+    Nearest {
+        /// Channel.
+        into: String,
+        /// Coordinate.
+        of: String,
+        /// Share of what is left that it predicts where it was not fitted.
+        share: f64,
+    },
+}

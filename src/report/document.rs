@@ -1,0 +1,128 @@
+//! The document `diagnosis.json`: a finding, its sentences, and where it is from.
+//!
+//! Keys of a finding are those of its fields; sentences are added here. Two runs with one seed differ
+//! in `seconds` and `date` only, whatever the number of threads, on one kind of processor.
+
+use serde::Serialize;
+
+use super::provenance::Provenance;
+use super::sentences;
+use crate::diagnose::{Cause, Finding, Withdrawn};
+
+/// Version of the form.
+const SCHEMA: u32 = 1;
+
+/// Names of the files beside the document.
+#[derive(Debug, Clone, Copy)]
+pub struct Beside<'a> {
+    /// File of the extended model.
+    pub extended_model: &'a str,
+    /// File of the page.
+    pub report: &'a str,
+}
+
+/// A finding as a document.
+#[derive(Debug, Serialize)]
+pub struct Document<'a> {
+    schema: u32,
+    #[serde(flatten)]
+    finding: Said<'a>,
+    extended_model: &'a str,
+    report: &'a str,
+    provenance: &'a Provenance,
+    date: &'a str,
+}
+
+/// A cause with its sentence.
+#[derive(Debug, Serialize)]
+struct SaidCause<'a> {
+    sentence: String,
+    #[serde(flatten)]
+    cause: &'a Cause,
+}
+
+/// A cause that was withdrawn, and why.
+#[derive(Debug, Serialize)]
+struct SaidWithdrawn<'a> {
+    reason: String,
+    #[serde(flatten)]
+    withdrawn: &'a Withdrawn,
+}
+
+/// What one record shows on its own.
+#[derive(Debug, Serialize)]
+struct SaidAlone<'a> {
+    record: &'a str,
+    cause: SaidCause<'a>,
+}
+
+/// A finding whose causes have sentences.
+#[derive(Debug)]
+struct Said<'a>(&'a Finding);
+
+impl Serialize for Said<'_> {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::{Error, SerializeMap};
+
+        let finding = self.0;
+        let value = serde_json::to_value(finding).map_err(S::Error::custom)?;
+        let fields = value.as_object().ok_or_else(|| S::Error::custom("a finding is a table"))?;
+        let mut map = serializer.serialize_map(None)?;
+        for (key, value) in fields {
+            match key.as_str() {
+                "causes" => {
+                    let said: Vec<SaidCause<'_>> = finding.causes.iter().map(said).collect();
+                    map.serialize_entry(key, &said)?;
+                }
+                "withdrawn" => {
+                    let said: Vec<_> = finding.withdrawn.iter().map(said_withdrawn).collect();
+                    map.serialize_entry(key, &said)?;
+                }
+                _ => map.serialize_entry(key, value)?,
+            }
+        }
+        if !finding.alone.is_empty() {
+            let alone = finding.alone.iter();
+            let alone: Vec<_> =
+                alone.map(|a| SaidAlone { record: &a.record, cause: said(&a.cause) }).collect();
+            map.serialize_entry("alone", &alone)?;
+        }
+        map.serialize_entry("remarks", &sentences::notes(finding))?;
+        map.end()
+    }
+}
+
+fn said(cause: &Cause) -> SaidCause<'_> {
+    SaidCause { sentence: sentences::cause(cause), cause }
+}
+
+fn said_withdrawn(withdrawn: &Withdrawn) -> SaidWithdrawn<'_> {
+    SaidWithdrawn { reason: sentences::withdrawn(withdrawn), withdrawn }
+}
+
+impl<'a> Document<'a> {
+    /// Of a finding, the files beside it, and where it is from.
+    pub fn of(finding: &'a Finding, beside: Beside<'a>, provenance: &'a Provenance) -> Self {
+        let Beside { extended_model, report } = beside;
+        let date = &provenance.date;
+        Self { schema: SCHEMA, finding: Said(finding), extended_model, report, provenance, date }
+    }
+
+    /// Its text, with a line break at the end.
+    ///
+    /// # Errors
+    ///
+    /// If a number cannot be written, which only happens to keys that are no text.
+    pub fn text(&self) -> Result<String, serde_json::Error> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+}
+
+/// A cause as a document: its sentence and its fields.
+///
+/// # Errors
+///
+/// As [`Document::text`].
+pub fn cause_document(cause: &Cause) -> Result<serde_json::Value, serde_json::Error> {
+    serde_json::to_value(said(cause))
+}

@@ -1,0 +1,61 @@
+//! Sentences about faults of the data.
+
+use crate::diagnose::{Cause, ColumnFault};
+use crate::digits::{number, percent, rough, with_unit};
+
+/// The sentence of a fault of one column.
+pub fn sentence(cause: &Cause, fault: ColumnFault) -> String {
+    let into = &cause.into;
+    let count = cause.rows.as_ref().map_or(0, Vec::len);
+    let unit = cause.parameters.first().map_or("", |v| &v.unit);
+    let comes_back = format!(
+        "before this was put right, {} of the removable error was there for it",
+        percent(cause.error_removed)
+    );
+    match fault {
+        ColumnFault::Outliers(share) => format!(
+            "Outliers in {into}: {count} samples ({:.2} %) stand alone far off and were left out.",
+            100.0 * share
+        ),
+        ColumnFault::Clipping => {
+            let at: Vec<String> =
+                cause.parameters.iter().map(|v| with_unit(v.value, &v.unit)).collect();
+            let at = at.join(" and ");
+            format!("The readings of {into} are cut off at {at}: {count} samples stand there.")
+        }
+        ColumnFault::Dropout(value) => format!(
+            "Dropouts in {into}: {count} samples fell to {} and were left out.",
+            with_unit(value, unit)
+        ),
+        ColumnFault::Stuck(value) => format!(
+            "A stuck reading of {into}: {count} samples stand at {} while the machine moves, and were \
+             left out.",
+            with_unit(value, unit)
+        ),
+        ColumnFault::Quantisation(step, over_noise) => format!(
+            "Coarse quantisation of {into}: steps of {}, whose rounding error ({} rms) is {} times the \
+             noise.",
+            with_unit(step, unit),
+            rounded(step, unit),
+            rough(over_noise)
+        ),
+        ColumnFault::SwappedSign => {
+            format!("The sign of {into} is swapped; {comes_back}.")
+        }
+        ColumnFault::TimeShift(shift) => format!(
+            "{into} was recorded {} s {}; {comes_back}.",
+            number(shift.abs(), None),
+            if shift < 0.0 { "early" } else { "late" }
+        ),
+        ColumnFault::SamplingTime(step) => format!(
+            "The sampling time is {} s, not what is stated; {comes_back}.",
+            number(step, None)
+        ),
+    }
+}
+
+/// Standard deviation of an evenly spread rounding error.
+fn rounded(step: f64, unit: &str) -> String {
+    let size = step / 12f64.sqrt();
+    format!("{}{}", rough(size), crate::digits::spaced(unit))
+}

@@ -1,0 +1,57 @@
+//! Findings in sentences: functions from data to text, and nothing else.
+//!
+//! `diagnose` finds and returns numbers; what a person reads is made here, so that it can be tested
+//! apart, and said in one way on the terminal, on the page, in the document and in a model file.
+
+mod cause;
+mod column;
+mod notes;
+mod plan;
+mod rest;
+mod size;
+
+#[cfg(test)]
+mod tests;
+
+pub use cause::{acts_where, cause, is_resolved, phrase, place_of};
+pub use notes::{note, notes};
+pub use plan::{experiment, look_alikes as pair, outlook, visibility};
+pub use rest::{details, gain, held, left, look_alikes, record, rmse, withdrawn};
+pub use size::formula;
+
+use crate::diagnose::{Cause, Finding, Verdict};
+
+/// The sentences that come first: the causes whose size is told from none, then those whose is not;
+/// or why there are none.
+pub fn headline(finding: &Finding) -> String {
+    let lines = match finding.verdict {
+        Verdict::NothingFound => vec![rest::nothing(finding)],
+        Verdict::Unexplained => {
+            let first =
+                "Unexplained: what is left depends on the inputs, and nothing in the library \
+                         accounts for it."
+                    .to_string();
+            std::iter::once(first).chain(ordered(finding).into_iter().map(cause)).collect()
+        }
+        _ => ordered(finding).into_iter().map(cause).collect(),
+    };
+    lines.join("\n")
+}
+
+/// Causes as they are told: those with a size first, in order of discovery.
+fn ordered(finding: &Finding) -> Vec<&Cause> {
+    let (told, rest): (Vec<&Cause>, Vec<&Cause>) =
+        finding.causes.iter().partition(|cause| is_resolved(cause));
+    told.into_iter().chain(rest).collect()
+}
+
+/// Everything that a terminal shows of a finding, line by line.
+pub fn summary(finding: &Finding) -> String {
+    let mut lines = vec![];
+    if finding.interrupted {
+        lines.push("Interrupted: this is what was known.".to_string());
+    }
+    lines.push(headline(finding));
+    lines.extend(details(finding));
+    lines.join("\n")
+}

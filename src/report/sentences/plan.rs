@@ -1,0 +1,134 @@
+//! What a record can see and tell apart, in sentences.
+
+use std::fmt;
+
+use crate::diagnose::{Experiment, LookAlikes, Outlook, Track, Visibility};
+use crate::digits::{number, spaced};
+
+/// Names in one list at most.
+const NAMES: usize = 12;
+/// Share that free parameters leave of an effect, below which they are said to imitate it.
+const IMITATED: f64 = 0.1;
+
+/// Some names, and how many more there are.
+fn names<T: fmt::Display>(all: &[T]) -> String {
+    let shown: Vec<String> = all.iter().take(NAMES).map(ToString::to_string).collect();
+    let more = all.len().saturating_sub(NAMES);
+    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+    format!("{}{more}", shown.join("; "))
+}
+
+/// One line: the cause, its smallest size, and what parameters leave of it.
+pub fn visibility(cause: &Visibility) -> String {
+    let unit = spaced(&cause.unit);
+    let size = match cause.smallest_visible {
+        _ if !cause.visible => "not visible".into(),
+        Some(size) => format!("from {}{unit}", number(size, None)),
+        None => "visible".into(),
+    };
+    let kappa = cause.kappa.map_or_else(String::new, |kappa| {
+        let left = number(100.0 * kappa, Some(100.0 * kappa * 0.03));
+        format!(", {left} % left if parameters are free")
+    });
+    format!("{}: {size}{kappa}", cause.cause)
+}
+
+/// One line: the two, how alike they are, and what tells them apart.
+pub fn look_alikes(pair: &LookAlikes) -> String {
+    let [a, b] = &pair.causes;
+    let told = match &pair.told_apart_by[..] {
+        [] => "nothing tried here tells them apart".into(),
+        by => format!("told apart by: {}", by.join(", ")),
+    };
+    format!("{a} | {b}: correlation {:.4}; {told}", pair.rho)
+}
+
+/// One line: what to do and what it would tell, of so many pairs that look alike with parameters
+/// trusted, and so many more with free ones.
+pub fn experiment(of: &Experiment, [trusted, free]: [usize; 2]) -> String {
+    let Experiment { name, description, tells_apart, tells_apart_free, also_shows, failed } = of;
+    if let Some(why) = failed {
+        return format!("{name} ({description}): {why}");
+    }
+    let also = match &also_shows[..] {
+        [] => String::new(),
+        shown => format!("; also shows {}", names(shown)),
+    };
+    let more = match free {
+        0 => String::new(),
+        free => format!(" ({tells_apart_free} of {free} if parameters are free)"),
+    };
+    format!("{name} ({description}): tells apart {tells_apart} of {trusted} pairs{more}{also}")
+}
+
+/// Everything that a record can see and tell apart.
+pub fn outlook(outlook: &Outlook) -> String {
+    let mut lines: Vec<String> = vec![];
+    for (output, floor) in &outlook.noise_floor {
+        let size = number(floor.std, None);
+        lines.push(format!(
+            "Noise of {output}: {size} ({}), {} samples",
+            floor.method, outlook.samples
+        ));
+    }
+    let hidden: Vec<_> = outlook.causes.iter().filter(|c| !c.visible).map(|c| &c.cause).collect();
+    match &hidden[..] {
+        [] => lines.push("Every cause of the library would show in this record.".into()),
+        hidden => lines.push(format!(
+            "{} of {} causes would not show, even as large as what drives their place: {}",
+            hidden.len(),
+            outlook.causes.len(),
+            names(hidden)
+        )),
+    }
+    let imitated: Vec<String> = outlook
+        .causes
+        .iter()
+        .filter(|c| c.visible)
+        .filter_map(|c| Some((c, c.kappa.filter(|k| *k < IMITATED)?)))
+        .map(|(c, kappa)| format!("{} ({:.1} % left)", c.cause, 100.0 * kappa))
+        .collect();
+    if !imitated.is_empty() {
+        lines.push(format!("Free parameters imitate: {}", names(&imitated)));
+    }
+    let sets = outlook.sets();
+    if sets.is_empty() {
+        lines.push("With the parameters trusted, no two causes look alike.".into());
+    }
+    for set in &sets {
+        let told = match outlook.best_for(set) {
+            None => "nothing tried here tells any of them apart".into(),
+            Some((name, told, pairs)) if told == pairs => format!("told apart by {name}"),
+            Some((name, told, pairs)) => format!("{name} tells {told} of {pairs} pairs apart"),
+        };
+        lines.push(format!("Look alike: {} -- {told}", names(set)));
+    }
+    let only_free = |p: &&LookAlikes| p.track == Track::ParametersFree;
+    let more = outlook.look_alikes.iter().filter(only_free).count();
+    if more > 0 {
+        lines.push(format!("With the parameters free, {more} more pairs look alike."));
+    }
+    let pairs = outlook.look_alikes.len();
+    let counts = [pairs - more, more];
+    if pairs > 0 || !hidden.is_empty() {
+        lines.push("Experiments that would tell more:".into());
+        let telling =
+            |e: &&Experiment| e.tells_apart + e.tells_apart_free > 0 || !e.also_shows.is_empty();
+        let mut any = false;
+        for other in outlook.experiments.iter().filter(telling) {
+            any = true;
+            lines.push(format!("  {}", experiment(other, counts)));
+        }
+        if !any {
+            lines.push("  none of those tried".into());
+        }
+    }
+    let never = outlook.look_alikes.iter().filter(|p| p.told_apart_by.is_empty()).count();
+    match never {
+        0 => lines.push("Each pair is told apart by one of them.".into()),
+        never => {
+            lines.push(format!("{never} of {pairs} pairs are told apart by none of those tried."))
+        }
+    }
+    lines.join("\n")
+}

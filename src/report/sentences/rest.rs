@@ -1,0 +1,172 @@
+//! What stands below the causes: look-alikes, the gain, what is left, what was supposed.
+
+use super::cause::phrase;
+use crate::diagnose::{
+    Alternative, Cause, Finding, Left, NotFound, RecordFacts, Verdict, Withdrawn,
+};
+use crate::digits::{number, percent, rough, spaced};
+use crate::evaluate::Metrics;
+
+/// Names in one list at most.
+const NAMES: usize = 5;
+
+/// Everything below the headline.
+pub fn details(finding: &Finding) -> Vec<String> {
+    let mut lines: Vec<String> =
+        finding.causes.iter().filter_map(|cause| look_alikes(finding, cause)).collect();
+    lines.extend(finding.withdrawn.iter().map(withdrawn));
+    lines.extend(finding.before.test.iter().filter_map(|(name, before)| {
+        let after = finding.after.test.get(name)?;
+        Some(rmse(finding, name, before, after))
+    }));
+    lines.extend(gain(finding));
+    lines.extend(finding.left.iter().map(|(name, of)| left(name, of)));
+    lines.extend(data_fault(finding));
+    lines.extend(held(finding));
+    lines.extend(super::notes(finding));
+    lines
+}
+
+/// What the data cannot tell a cause from.
+pub fn look_alikes(finding: &Finding, cause: &Cause) -> Option<String> {
+    if cause.indistinguishable.is_empty() {
+        return None;
+    }
+    let others = cause.indistinguishable.iter().map(|other| alternative(finding, other));
+    let others: Vec<String> = others.collect();
+    Some(format!("  the data cannot tell {} from: {}", super::place_of(cause), others.join("; ")))
+}
+
+fn alternative(finding: &Finding, other: &Alternative) -> String {
+    let name = phrase(&other.title, &other.effect, &other.into, other.of.as_deref(), other.site);
+    let sure = other.probability.map_or_else(String::new, |p| format!(" ({})", percent(p)));
+    // what the model holds may be wrong as well
+    let held = if finding.held.contains(&other.into) { ", which is held as right" } else { "" };
+    format!("{name}{sure}{held}")
+}
+
+/// `angle: test RMSE 0.03100 -> 0.004800 rad (fit 79.0 -> 96.8 %)`; one figure where no model was
+/// extended.
+pub fn rmse(finding: &Finding, name: &str, before: &Metrics, after: &Metrics) -> String {
+    let unit = spaced(finding.unit(name));
+    let fit = |m: &Metrics| match m.fit_percent.is_finite() {
+        true => format!("{:.1}", m.fit_percent),
+        false => "none".into(),
+    };
+    if finding.causes.is_empty() {
+        let rmse = number(before.rmse, None);
+        return format!("{name}: test RMSE {rmse}{unit}, fit {} %", fit(before));
+    }
+    format!(
+        "{name}: test RMSE {} -> {}{unit}, fit {} -> {} %",
+        number(before.rmse, None),
+        number(after.rmse, None),
+        fit(before),
+        fit(after)
+    )
+}
+
+/// The share of the removable error that is gone, with its interval; none where nothing was added.
+pub fn gain(finding: &Finding) -> Option<String> {
+    finding.in_the_machine().next()?;
+    let [low, high] = finding.gain.interval95.map(|share| format!("{:.1}", 100.0 * share));
+    Some(format!(
+        "The extended model removes {} of the removable error of the test data (95 % interval {low} to \
+         {high} %).",
+        percent(finding.gain.error_removed)
+    ))
+}
+
+/// `What is left of angle is 1.03 times the noise, and white.`
+pub fn left(name: &str, left: &Left) -> String {
+    let colour = match left.white {
+        true => "white: a sample says nothing of the next".into(),
+        false => format!("coloured (score {:.0}): a sample predicts the next", left.score),
+    };
+    match left.ratio_to_noise {
+        Some(ratio) => {
+            format!("What is left of {name} is {} times the noise, and {colour}.", rough(ratio))
+        }
+        None => format!("What is left of {name} is {colour}; the noise is not known."),
+    }
+}
+
+/// That faults of the data are not all that is wrong, where they are not.
+fn data_fault(finding: &Finding) -> Option<String> {
+    let only = finding.verdict == Verdict::DataFault;
+    let open = finding.left.values().any(|left| !left.white);
+    (only && open).then(|| {
+        "The data are at fault, and that is not all: what is left is no white noise either.".into()
+    })
+}
+
+/// How much was recorded.
+pub fn record(facts: &RecordFacts) -> String {
+    let test = facts.test_samples.map_or_else(
+        || "the last part of them was kept for the test".into(),
+        |n| format!("{n} samples of another record are the test"),
+    );
+    let records =
+        if facts.records == 1 { "one record".into() } else { format!("{} records", facts.records) };
+    let step = number(facts.sampling_time, None);
+    format!("{} samples of {records}, {step} s apart; {test}.", facts.samples)
+}
+
+/// What was supposed right.
+pub fn held(finding: &Finding) -> Option<String> {
+    let names = finding.held.join(", ");
+    (!names.is_empty()).then(|| {
+        format!(
+            "Supposed right, because they are held: {names}. If one of them is wrong or drifts, that is \
+             told as something else."
+        )
+    })
+}
+
+/// A cause that the test data refute.
+pub fn withdrawn(withdrawn: &Withdrawn) -> String {
+    format!(
+        "Withdrawn: {}. The test data refute it (test RMSE times {} with it), and the extended model does \
+         not have it.",
+        super::place_of(&withdrawn.cause),
+        number(withdrawn.test_rmse_ratio, None)
+    )
+}
+
+/// Why there are no causes, how good the model is, and what this record could not have shown.
+pub fn nothing(finding: &Finding) -> String {
+    let mut text =
+        "Nothing found: what the model leaves does not depend on the inputs.".to_string();
+    let noise = |name: &String| {
+        let left = finding.left.get(name)?;
+        let ratio = left.ratio_to_noise.map(|ratio| format!("{} times the noise", rough(ratio)));
+        let colour = if left.white { "white" } else { "coloured" };
+        Some(ratio.map_or_else(|| colour.into(), |ratio| format!("{ratio} and {colour}")))
+    };
+    for (name, metrics) in &finding.before.test {
+        let fit = match metrics.fit_percent.is_finite() {
+            true => format!("fits {name} to {:.1} %", metrics.fit_percent),
+            false => format!("has no fit of {name}, which is constant"),
+        };
+        let noise = noise(name).map_or_else(String::new, |n| format!("; what it leaves is {n}"));
+        text += &format!(" The model {fit}{noise}.");
+    }
+    let unseen = finding.not_found.iter().filter(|cause| !cause.visible);
+    let unseen: Vec<&NotFound> = unseen.collect();
+    if !unseen.is_empty() {
+        let names = unseen.iter().take(NAMES).map(|c| {
+            let of = c.of.as_ref().map_or_else(String::new, |of| format!(" of {of}"));
+            format!("{} on {}{of}", c.effect.replace('_', " "), c.into)
+        });
+        let names: Vec<String> = names.collect();
+        let more = unseen.len().saturating_sub(NAMES);
+        let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+        text += &format!(
+            " This record could not have shown {} of {} causes: {}{more}.",
+            unseen.len(),
+            finding.not_found.len(),
+            names.join("; ")
+        );
+    }
+    text
+}
