@@ -4,6 +4,7 @@
 
 mod contract;
 mod encoder;
+mod files;
 mod fitted_model;
 mod house;
 mod linear;

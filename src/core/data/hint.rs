@@ -104,9 +104,9 @@ impl Explain for DataError {
             Self::TimeOrder { .. } => {
                 "--repair sorts the rows by time and leaves out repeated ones; two records need two files, or a column `record`".into()
             }
-            Self::TimeIrregular { rounded_from: Some(step), .. } => format!(
-                "--repair makes the clock regular and says how; if the times are only rounded, removing the column and writing `sampling_time = {step}` does the same"
-            ),
+            Self::TimeIrregular { rounded_from: Some(_), .. } => {
+                "--repair makes the clock regular and says how: it tells rounded times from jitter".into()
+            }
             Self::TimeIrregular { missing_rows, median, .. } if *missing_rows > 0 => format!(
                 "rows seem to be missing before this line, {missing_rows} at {median} s: --repair puts them in and says how"
             ),
@@ -146,6 +146,9 @@ fn text_hint(found: &str) -> String {
         .contains(&&*lower)
     {
         "leave the cell empty, or write NaN, for a missing value".into()
+    } else if found.contains(':') && found.starts_with(|c: char| c.is_ascii_digit()) {
+        "write dates and times as 2026-05-01T12:00:00.5, times of day as 12:00:00.5, or seconds"
+            .into()
     } else if found.contains([';', '\t', ' ']) {
         "columns are separated by `,`, `;` or a tab, the same in every line".into()
     } else {
