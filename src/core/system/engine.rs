@@ -1,15 +1,20 @@
 //! The simulation: groups of lanes, each with its own effects, through one law.
 
+mod tracks;
+mod transition;
+
 use crate::model::{Ask, Block, Law};
 use crate::per_isa;
 
-use super::arithmetic::{add, euler, flush, magnitude, move_along, rk4};
+use super::arithmetic::{add, euler, move_along, rk4};
 use super::exact::Exact;
 use super::group::Group;
 use super::lane::{Drive, Lane, Track, pack};
 use super::plan::Plan;
 use super::sampling::{Hold, Method};
 use super::wiring::EffectNumber;
+
+pub use transition::{Jacobian, Transition};
 
 /// Magnitude beyond which a state counts as diverged.
 const BEYOND: f64 = 1e150;
@@ -78,6 +83,8 @@ struct Run<'a, R> {
     u_in: Vec<R>,
     w: Vec<R>,
     no_w: Vec<R>,
+    /// What else enters the own channels and the inputs: the disturbance of a filter.
+    noise: Option<[Vec<R>; 2]>,
     y: Vec<R>,
     sums: Vec<R>,
     exact: Option<Exact<R>>,
@@ -89,6 +96,8 @@ struct Run<'a, R> {
     /// Whether parameters drift, and the time up to which they have.
     drifting: bool,
     drifted: Option<f64>,
+    /// Whether parameters carry slopes that the exact step has to be told of.
+    sloped: bool,
     first: bool,
     /// Sample at which time is 0.
     origin: i64,
@@ -119,6 +128,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             into_inputs: made.iter().any(Group::enters_inputs),
             drifting: made.iter().any(Group::is_drifting),
             drifted: None,
+            sloped: false,
             fine: made.iter().any(|group| group.outputs.fine),
             theta_now: theta.clone(),
             groups: made,
@@ -136,6 +146,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             u_in: zeros(n.u),
             w: zeros(n.w),
             no_w: zeros(n.w),
+            noise: None,
             y: zeros(n.y),
             sums: zeros(1),
             first: true,
@@ -160,28 +171,35 @@ impl<'a, R: EffectNumber> Run<'a, R> {
 
     /// Gives the outputs at sample `k` and moves to the next one.
     fn sample(&mut self, drive: &Drive, k: usize, end: usize, tracks: &mut [Vec<Track>]) {
-        let base = self.base;
-        let h = base.step();
-        for j in 0..base.substeps {
-            self.time = (k as i64 - self.origin).max(0) as f64 * base.sampling_time + j as f64 * h;
-            self.drift(self.time);
-            self.drive(drive, k, end, j);
-            for group in &mut self.groups {
-                group.inputs(&mut self.u, h);
-            }
-            if j == 0 || self.fine {
-                self.output(h);
-            }
+        for j in 0..self.base.substeps {
+            self.begin(drive, k, end, j);
             if j == 0 {
                 self.store(k, tracks);
             }
-            self.advance(h);
-            self.first = false;
-            for group in &mut self.groups {
-                group.started();
-            }
+            self.finish();
         }
         self.watch(k, tracks);
+    }
+
+    /// Everything that is known at the start of step `j` of a sample: time, inputs, outputs.
+    fn begin(&mut self, drive: &Drive, k: usize, end: usize, j: usize) {
+        let (base, h) = (self.base, self.base.step());
+        self.time = (k as i64 - self.origin).max(0) as f64 * base.sampling_time + j as f64 * h;
+        self.drift(self.time);
+        self.drive(drive, k, end, j);
+        for group in &mut self.groups {
+            group.inputs(&mut self.u, h);
+        }
+        if j == 0 || self.fine {
+            self.output(h);
+        }
+    }
+
+    /// The step itself.
+    fn finish(&mut self) {
+        self.advance(self.base.step());
+        self.first = false;
+        self.groups.iter_mut().for_each(Group::started);
     }
 
     /// Inputs at the start, middle and end of step `j`.
@@ -267,58 +285,6 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         }
     }
 
-    fn store(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
-        let ny = self.base.sizes.y;
-        for (group, tracks) in self.groups.iter().zip(tracks.iter_mut()) {
-            for (l, track) in tracks.iter_mut().enumerate() {
-                if track.diverged_at.is_some() {
-                    continue;
-                }
-                let (pack, lane) = (group.first + l / R::LANES, l % R::LANES);
-                for (o, series) in track.y.iter_mut().enumerate() {
-                    series[k] = self.y[pack * ny + o].lane(lane);
-                    if !series[k].is_finite() {
-                        track.diverged_at = Some(k);
-                    }
-                }
-            }
-        }
-        if tracks.iter().flatten().any(|track| !track.seen.is_empty()) {
-            self.see(k, tracks);
-        }
-    }
-
-    /// Records the table of sources.
-    fn see(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
-        let base = self.base;
-        for (group, tracks) in self.groups.iter_mut().zip(tracks) {
-            let seen = [&self.theta_now, &self.derived, &self.x, &self.u[0]];
-            let at = group.instant(self.law, seen, self.time);
-            let table = group.table(&at);
-            let entries = base.sources.entries.len();
-            for (l, track) in tracks.iter_mut().enumerate() {
-                for (i, series) in track.seen.iter_mut().enumerate() {
-                    series[k] = table[l / R::LANES * entries + i].lane(l % R::LANES);
-                }
-            }
-        }
-    }
-
-    /// Marks lanes whose state is no longer finite, and flushes what would be subnormal.
-    fn watch(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
-        flush(&mut self.x, R::FLUSH);
-        magnitude(&self.x, self.base.sizes.x, &mut self.sums);
-        for (group, tracks) in self.groups.iter_mut().zip(tracks) {
-            flush(&mut group.s, R::FLUSH);
-            for (l, track) in tracks.iter_mut().enumerate() {
-                let size = self.sums[group.first + l / R::LANES].lane(l % R::LANES);
-                if track.diverged_at.is_none() && !(size < BEYOND) {
-                    track.diverged_at = Some(k + 1);
-                }
-            }
-        }
-    }
-
     /// Rates of all states at a trial state: stage `i`, with the inputs at `slot`.
     fn stage(&mut self, i: usize, slot: usize, time: f64) {
         self.drift(time);
@@ -337,6 +303,10 @@ impl<'a, R: EffectNumber> Run<'a, R> {
                 self.u_in.copy_from_slice(u);
             }
             self.w.fill(R::constant(0.0));
+            if let Some([into_w, into_u]) = &self.noise {
+                self.w.copy_from_slice(into_w);
+                add(&mut self.u_in, into_u);
+            }
             for group in self.groups.iter_mut().filter(|group| group.inside) {
                 let packs = group.places();
                 let seen = [&self.theta_now, &self.derived, x, u];
@@ -363,7 +333,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         if let Some(exact) = &mut self.exact {
             exact.note(i, u, &self.u[slot], &self.w);
             let still = Block { theta: &self.theta, derived: &self.still, ..block };
-            for group in self.groups.iter().filter(|group| group.is_drifting()) {
+            for group in self.groups.iter().filter(|g| self.sloped || g.is_drifting()) {
                 let packs = group.places();
                 let rows = packs.start * n.x..packs.end * n.x;
                 let (now, then) = (&mut out[rows.clone()], &mut self.room[rows.clone()]);
@@ -424,17 +394,6 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         }
         for group in self.groups.iter_mut().filter(|group| !group.s.is_empty()) {
             euler(&mut group.st, &group.s, &group.ks[i], h * share);
-        }
-    }
-
-    /// Hands out the states after the last sample.
-    fn last(&self, tracks: &mut [Vec<Track>]) {
-        let n = self.base.sizes.x;
-        for (group, tracks) in self.groups.iter().zip(tracks) {
-            for (l, track) in tracks.iter_mut().enumerate() {
-                let pack = group.first + l / R::LANES;
-                track.last = (0..n).map(|i| self.x[pack * n + i].lane(l % R::LANES)).collect();
-            }
         }
     }
 }

@@ -233,11 +233,17 @@ impl<'a, R: EffectNumber> Group<'a, R> {
         }
     }
 
+    /// Takes what is remembered beside states as known from now on: it carries no slopes.
+    pub fn forget_slopes(&mut self) {
+        self.outputs.forget_slopes();
+        self.wirings.iter_mut().for_each(Wiring::forget_slopes);
+    }
+
     /// Every entry of the source table, pack by pack.
     pub fn table(&mut self, at: &Instant<'_, R>) -> Vec<R> {
         let n = self.plan.sizes;
-        self.coordinates = vec![R::constant(0.0); self.packs * n.z];
-        self.seen_outputs = vec![R::constant(0.0); self.packs * n.y];
+        self.coordinates.resize(self.packs * n.z, R::constant(0.0));
+        self.seen_outputs.resize(self.packs * n.y, R::constant(0.0));
         self.look(at);
         let sight = sight(self.plan, at, &self.coordinates, &self.seen_outputs);
         let entries = self.plan.sources.entries.len();

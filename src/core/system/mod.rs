@@ -30,6 +30,7 @@ use crate::effect::WrittenEffect;
 use crate::model::{Signals, StateSpaceModel, copied};
 use crate::real::F64x8;
 
+pub use engine::{Jacobian, Transition};
 pub use error::SystemError;
 pub use lane::{Drive, Lane, Route, Track};
 pub use placed::{AlsoInto, Placed};

@@ -63,6 +63,13 @@ impl<R: EffectNumber> OutputPaths<R> {
         }
     }
 
+    /// Takes what the paths remember as known from now on.
+    pub fn forget_slopes(&mut self) {
+        for entry in &mut self.entries {
+            entry.memory.forget_slopes();
+        }
+    }
+
     /// Passes the outputs of one instant through every path.
     pub fn advance(
         &mut self,

@@ -322,4 +322,11 @@ impl<R: EffectNumber> Wiring<R> {
             play.start();
         }
     }
+
+    /// Takes what it remembers beside its states as known from now on.
+    pub fn forget_slopes(&mut self) {
+        if let Some(play) = &mut self.play {
+            play.forget_slopes();
+        }
+    }
 }
