@@ -2,6 +2,7 @@
 
 mod columns;
 mod estimate;
+mod look;
 
 use std::path::PathBuf;
 
@@ -9,6 +10,7 @@ use clap::{Args as Arguments, Parser, Subcommand};
 
 pub use columns::Columns;
 pub use estimate::Estimate;
+pub use look::Look;
 
 /// Shows what a model's simulation gets wrong, names the cause, extends the model and
 /// measures the gain.
@@ -84,6 +86,11 @@ pub enum Command {
         --out. The same call goes on from checkpoint.json there; one Ctrl-C stops with the best model."
     )]
     Fit(Fit),
+    /// Shows what a model leaves unexplained on records, as a force on every channel; names nothing
+    #[command(after_help = "Example:\n  lacuna look --model press.toml --data est.csv\n\n\
+        Smooths the missing force of every channel, no law assumed, and says how much of it a curve of\n\
+        each coordinate explains. Writes look.html into --out; takes seconds.")]
+    Look(Look),
     /// Says what a record can see and tell apart, and the experiment that would tell more
     #[command(after_help = "Example:\n  lacuna plan --model press.toml --data est.csv\n\n\
         Every cause of the library is simulated along the record, a little of it, and measured by the\n\

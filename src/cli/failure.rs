@@ -12,6 +12,7 @@ use lacuna::evaluate::EvaluateError;
 use lacuna::fault::{Explain, Kind, Place};
 use lacuna::file::FileError;
 use lacuna::lfr::LfrError;
+use lacuna::likelihood::LikelihoodError;
 use lacuna::study::StudyError;
 use lacuna::system::SystemError;
 use lacuna::train::TrainError;
@@ -138,6 +139,7 @@ macro_rules! explained {
 explained!(
     DataError,
     EvaluateError,
+    LikelihoodError,
     LinearError,
     SystemError,
     DiagnoseError,

@@ -17,6 +17,7 @@ mod generate;
 mod input;
 mod linear;
 mod list;
+mod missing;
 mod no_model;
 mod plan;
 mod provenance;
@@ -56,6 +57,7 @@ fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         Command::Fit(fit) => fit::run(fit, seed, args.common.threads, look),
         Command::Generate(generate) => generate::run(generate, seed, look),
         Command::Study(study) => study::run(study, seed, args.common.threads, look),
+        Command::Look(args) => missing::run(args, look),
         Command::Plan(plan) => plan::run(plan, look),
         Command::Check(check) => check::run(check, look),
         Command::Models => list::models(look),

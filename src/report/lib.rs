@@ -3,11 +3,13 @@
 use lacuna_core::{data, digits, effect, evaluate};
 use lacuna_diagnose as diagnose;
 use lacuna_learn::train;
+use lacuna_likelihood as likelihood;
 
 mod analysis;
 mod cause;
 mod distortion;
 mod document;
+mod missing;
 mod page;
 mod provenance;
 pub mod sentences;
@@ -21,6 +23,7 @@ use std::path::Path;
 use crate::diagnose::{Finding, Verdict};
 use crate::digits::number;
 pub use document::{Beside, Document, cause_document};
+pub use missing::MissingReport;
 pub use page::Page;
 pub use provenance::{FileUsed, Provenance};
 pub use svg::{Figure, Scale};

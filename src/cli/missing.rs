@@ -1,0 +1,56 @@
+//! `lacuna look --model M --data D`: the missing force of every channel, without a search.
+
+use serde_json::{Value, json};
+
+use super::args::Look as Args;
+use super::console::Console;
+use super::failure::Failure;
+use super::input;
+use lacuna::fault::Place;
+use lacuna::likelihood::{MissingForce, Predictor};
+use lacuna::report::MissingReport;
+
+/// Shows what a model leaves unexplained on records.
+pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
+    let Some(model) = &args.model else {
+        let place = Place { key: Some("--model".into()), ..Place::default() };
+        let hint = "add --model FILE: the missing force is what a model lacks".into();
+        return Err(Failure::input("no model was given to look with".into(), place, hint));
+    };
+    let (system, want) = input::model(model)?;
+    let records = input::records(&args.data, &want, &args.columns, look)?;
+    let missing = Predictor::new(&system, &records)?.missing()?;
+    let step = records.first().map_or(1.0, |record| record.sampling_time);
+    let report = MissingReport::of(&missing, step);
+    for line in report.lines() {
+        look.result(&line);
+    }
+    let page = args.out.join("look.html");
+    let failed = |error: std::io::Error| {
+        Failure::work(format!("{} cannot be written: {error}", page.display()))
+    };
+    std::fs::create_dir_all(&args.out).map_err(failed)?;
+    report.write(&page).map_err(failed)?;
+    look.say(&format!("Wrote {}", page.display()));
+    look.document(&json!({
+        "schema": 1,
+        "missing": missing.iter().map(channel).collect::<Vec<_>>(),
+        "report": page.display().to_string(),
+    }));
+    Ok(0)
+}
+
+fn channel(force: &MissingForce) -> Value {
+    let explained = force.explained_by.iter();
+    let by: Vec<Value> = explained
+        .map(|e| json!({ "coordinate": e.coordinate, "unit": e.unit, "share": e.share }))
+        .collect();
+    json!({
+        "channel": force.channel,
+        "unit": force.unit,
+        "rms": force.rms,
+        "log_likelihood_gain": force.gain,
+        "explained_by": by,
+        "alike": force.alike,
+    })
+}

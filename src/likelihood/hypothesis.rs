@@ -1,0 +1,223 @@
+//! A hypothesis fitted exactly: laws at their places and moved parameters, the noise estimated anew.
+//!
+//! Gauss-Newton steps (Levenberg's damping) on coefficients, shapes and parameters by the tangents of the
+//! innovations along the extended model's own path, every step judged by the exact log likelihood of
+//! the innovations; then the intensities of the noise, then again.
+//! Sources: Ljung, "System Identification", 2nd ed., section 10.2; Astrom, Automatica 16, 1980.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::error::LikelihoodError;
+use super::follow::{Followed, Wanted};
+use super::laws::Law;
+use super::noise::Noise;
+use super::predictor::{Model, Predictor, column};
+use super::replay::Pass;
+use super::tangent::{Site, gram};
+use crate::effect::Role;
+use crate::system::{Placed, Plan};
+
+/// Iterations at most between two estimates of the noise, dampings tried in each, and the change of
+/// log L at which a fit is settled.
+const ITERATIONS: usize = 8;
+const DAMPINGS: usize = 6;
+const SETTLED: f64 = 0.02;
+/// Estimates of the noise in one fit.
+const NOISES: usize = 2;
+/// Largest step of a positive shape on the log scale, of any other number in units of its size.
+const STEP: f64 = 0.5;
+
+/// One part of a hypothesis.
+#[derive(Debug, Clone)]
+pub(crate) enum Part {
+    Law { site: Site, source: Option<usize>, law: Box<Law> },
+    Parameter(usize),
+}
+
+/// A fitted hypothesis.
+#[derive(Debug, Clone)]
+pub(crate) struct Hypothesis {
+    pub parts: Vec<Part>,
+    pub theta: Vec<f64>,
+    pub noise: Noise,
+    pub log_likelihood: f64,
+}
+
+impl Hypothesis {
+    /// Numbers that were fitted, the noise's apart.
+    pub fn numbers(&self) -> usize {
+        self.parts
+            .iter()
+            .map(|part| match part {
+                Part::Law { law, .. } => law.free.len(),
+                Part::Parameter(_) => 1,
+            })
+            .sum()
+    }
+
+    /// log L - (numbers with the noise's) / 2 ln(samples).
+    pub fn criterion(&self, samples: f64) -> f64 {
+        self.log_likelihood - 0.5 * (self.numbers() + self.noise.count()) as f64 * samples.ln()
+    }
+}
+
+impl Predictor {
+    /// Fits a hypothesis from the values that its parts have; `None` where it cannot be built or run.
+    pub(crate) fn fit(&self, parts: Vec<Part>, theta: &[f64], noise: &Noise) -> Option<Hypothesis> {
+        let start = Hypothesis {
+            parts,
+            theta: theta.to_vec(),
+            noise: noise.clone(),
+            log_likelihood: f64::NEG_INFINITY,
+        };
+        let (mut best, mut run) = self.evaluated(start).ok()?;
+        for round in 0..NOISES {
+            let before = best.log_likelihood;
+            (best, run) = self.improved(best, run)?;
+            let model = self.extended(&best.parts, &best.theta).ok()?;
+            let chosen = self.renewed(&model, &best.noise, 1).ok()?;
+            if chosen.log_likelihood > best.log_likelihood {
+                best.noise = chosen.noise;
+                (best, run) = self.evaluated(best).ok()?;
+            }
+            if round > 0 && best.log_likelihood - before < 0.5 {
+                break;
+            }
+        }
+        (best, _) = self.improved(best, run)?;
+        best.log_likelihood.is_finite().then_some(best)
+    }
+
+    /// The model with a hypothesis in it.
+    pub(crate) fn extended(&self, parts: &[Part], theta: &[f64]) -> Result<Model, LikelihoodError> {
+        let mut effects = self.system.effects.clone();
+        effects.extend(self.placed(parts));
+        let plan = Plan::new(self.model.plan.base.clone(), &effects)?;
+        Ok(Model { plan, theta: theta.to_vec() })
+    }
+
+    /// The laws of a hypothesis as entries of a model file.
+    pub(crate) fn placed(&self, parts: &[Part]) -> Vec<Placed> {
+        let plan = &self.model.plan;
+        let law = |part: &Part| {
+            let Part::Law { site, source, law } = part else { return None };
+            let into = self.name(*site);
+            let of = source.map(|e| plan.sources.entries[e].0.name.clone());
+            let effect = law.effect.with_values(&law.values).ok()?;
+            Some(Placed::new(effect, &into, of.as_deref()))
+        };
+        parts.iter().filter_map(law).collect()
+    }
+
+    /// The name of a site in model files.
+    pub(crate) fn name(&self, site: Site) -> String {
+        let signals = &self.model.plan.signals;
+        match site {
+            Site::Force(c) => self.forces()[c].0.clone(),
+            Site::Output(o) => signals.outputs[o].name.clone(),
+            Site::Parameter(p) => signals.parameters[p].name.clone(),
+        }
+    }
+
+    fn evaluated(&self, of: Hypothesis) -> Result<(Hypothesis, Followed), LikelihoodError> {
+        let model = self.extended(&of.parts, &of.theta)?;
+        let theta = of.parts.iter().any(|part| matches!(part, Part::Parameter(_)));
+        let wanted = Wanted { theta, seen: true, gate: Some(self.gate()) };
+        let run = self.run(&model, &of.noise, wanted)?;
+        Ok((Hypothesis { log_likelihood: run.log_likelihood, ..of }, run))
+    }
+
+    /// Damped Gauss-Newton steps at a fixed noise.
+    fn improved(&self, mut best: Hypothesis, mut run: Followed) -> Option<(Hypothesis, Followed)> {
+        let mut damping = 1e-6;
+        for _ in 0..ITERATIONS {
+            if !best.log_likelihood.is_finite() {
+                return Some((best, run));
+            }
+            let columns = self.slopes(&best, &run);
+            let pass = Pass::of(&run.path, &best.noise, false);
+            let sums = gram(&run.path, &pass, &best.noise, &columns);
+            let m = columns.len();
+            let size = DVector::from_fn(m, |i, _| sums.square[(i, i)].max(1e-300).sqrt());
+            let scaled = DMatrix::from_fn(m, m, |i, j| sums.square[(i, j)] / size[i] / size[j]);
+            let before = best.log_likelihood;
+            let mut moved = false;
+            for _ in 0..DAMPINGS {
+                let damped = &scaled + DMatrix::identity(m, m) * damping;
+                let slope = sums.slope.component_div(&size);
+                let step = damped.lu().solve(&slope).map(|s| -s.component_div(&size));
+                let next = step.map(|step| self.stepped(&best, step.as_slice()));
+                let tried = next.and_then(|next| self.evaluated(next).ok());
+                if let Some((next, path)) = tried
+                    && next.log_likelihood > best.log_likelihood
+                {
+                    (best, run, moved) = (next, path, true);
+                    damping = (damping / 10.0_f64).max(1e-9);
+                    break;
+                }
+                damping = (damping * 10.0).max(1e-5);
+            }
+            if !moved || best.log_likelihood - before < SETTLED {
+                break;
+            }
+        }
+        Some((best, run))
+    }
+
+    /// One column per free number of a hypothesis.
+    fn slopes(&self, of: &Hypothesis, run: &Followed) -> Vec<(Site, Vec<f64>)> {
+        let path = &run.path;
+        let entries = self.model.plan.sources.entries.len();
+        let mut columns = vec![];
+        for part in &of.parts {
+            match part {
+                Part::Parameter(p) => {
+                    columns.push((Site::Parameter(*p), vec![1.0; path.len]));
+                }
+                Part::Law { site, source, law } => {
+                    let z = match (site, source) {
+                        (_, None) => vec![1.0; path.len],
+                        (Site::Output(o), _) => column(&path.predicted, path.outputs, *o),
+                        (_, Some(e)) => column(&path.seen, entries, *e),
+                    };
+                    columns.extend(law.slopes(&z).into_iter().map(|column| (*site, column)));
+                }
+            }
+        }
+        columns
+    }
+
+    /// The hypothesis after a step, within the knobs' bounds.
+    fn stepped(&self, of: &Hypothesis, step: &[f64]) -> Hypothesis {
+        let mut next = of.clone();
+        let mut at = 0;
+        for part in &mut next.parts {
+            match part {
+                Part::Parameter(p) => {
+                    let parameter = &self.model.plan.signals.parameters[*p];
+                    let value = next.theta[*p] + step[at];
+                    next.theta[*p] = value.clamp(parameter.min, parameter.max);
+                    at += 1;
+                }
+                Part::Law { law, .. } => {
+                    for i in law.free.clone() {
+                        let (knob, value) = (&law.card.knobs[i], law.values[i]);
+                        let moved = match knob.role {
+                            Role::Coefficient => value + step[at],
+                            _ if knob.min >= 0.0 && value > 0.0 => {
+                                value * (step[at] / value).clamp(-STEP, STEP).exp()
+                            }
+                            _ => {
+                                let most = STEP * value.abs().max(1e-12);
+                                value + step[at].clamp(-most, most)
+                            }
+                        };
+                        law.values[i] = moved.clamp(knob.min, knob.max);
+                        at += 1;
+                    }
+                }
+            }
+        }
+        next
+    }
+}

@@ -1,0 +1,182 @@
+//! Laws that a place may have: every registered effect without a memory, on a grid of shapes.
+//!
+//! A law is linear in its coefficients, so that at every point of the grid each coefficient has one
+//! column, w at coefficient 1 along the filtered coordinate; a law without a coefficient (on its own
+//! path) is a column itself. What remembers (hysteresis, play, lag, delay) is left to a search.
+
+use crate::effect::{
+    CandidateEffect, EffectBlock, EffectCall, EffectCard, Mechanism, Needs, Role, View,
+};
+use crate::real::{F64x8, Real};
+use crate::register;
+
+/// A law at one point of its grid.
+#[derive(Debug, Clone)]
+pub(crate) struct Law {
+    pub name: &'static str,
+    pub effect: Box<dyn CandidateEffect>,
+    pub card: EffectCard,
+    /// Values of the knobs.
+    pub values: Vec<f64>,
+    /// Knobs that may be fitted.
+    pub free: Vec<usize>,
+}
+
+/// Where a law would be put.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Spot {
+    /// A channel of the model, of a coordinate; whether that is a velocity.
+    Channel { velocity: bool },
+    /// An input or output, of itself.
+    OwnPath { input: bool },
+}
+
+/// The laws of a coordinate at a spot, each at every point of its grid.
+pub(crate) fn laws(spot: Spot, view: &View) -> Vec<Law> {
+    let mut found = vec![];
+    for (own, effect) in register::effects() {
+        let card = effect.card();
+        let fits = match (spot, card.needs) {
+            (_, Needs::Coordinate) => true,
+            (Spot::Channel { velocity }, Needs::Velocity) => velocity && view.changes_sign(),
+            (Spot::OwnPath { .. }, Needs::Velocity) => false,
+            _ => false,
+        };
+        let allowed = match spot {
+            Spot::Channel { .. } => card.places.channel,
+            Spot::OwnPath { input: true } => card.places.input,
+            Spot::OwnPath { input: false } => card.places.output,
+        };
+        let plain = card.mechanism == Mechanism::Law && card.states == 0 && card.made_for.is_none();
+        if fits && allowed && plain && !card.knobs.is_empty() {
+            found.extend(points(own.name, effect.as_ref(), &card, spot, view));
+        }
+    }
+    found
+}
+
+/// The laws that depend on nothing: an offset.
+pub(crate) fn offsets() -> Vec<Law> {
+    let all = register::effects().into_iter().filter_map(|(own, effect)| {
+        let card = effect.card();
+        let plain = card.mechanism == Mechanism::Law && card.states == 0;
+        (plain && card.needs == Needs::Nothing).then(|| {
+            let values = card.values();
+            let free = (0..values.len()).collect();
+            Law { name: own.name, effect, card, values, free }
+        })
+    });
+    all.collect()
+}
+
+/// The points of one law's grid; a knob that picks a variant takes each of its ends.
+fn points(
+    name: &'static str,
+    effect: &dyn CandidateEffect,
+    card: &EffectCard,
+    spot: Spot,
+    view: &View,
+) -> Vec<Law> {
+    let search = effect.search(view);
+    let own_path = matches!(spot, Spot::OwnPath { .. });
+    let fixed = |i: usize| {
+        let name = &card.knobs[i].name;
+        card.own_path.iter().find(|(knob, _)| own_path && knob == name).map(|(_, value)| *value)
+    };
+    let choices: Vec<usize> =
+        (0..card.knobs.len()).filter(|&i| card.knobs[i].role == Role::Choice).collect();
+    let mut found = vec![];
+    for start in &search.starts {
+        for variant in 0..1_usize << choices.len().min(3) {
+            let mut values = start.clone();
+            for (bit, &i) in choices.iter().enumerate() {
+                let knob = &card.knobs[i];
+                values[i] = if variant >> bit & 1 == 0 { knob.max } else { knob.min };
+            }
+            (0..values.len()).for_each(|i| values[i] = fixed(i).unwrap_or(values[i]));
+            let free = (0..values.len())
+                .filter(|&i| fixed(i).is_none() && card.knobs[i].role != Role::Choice)
+                .filter(|&i| values[i].is_finite())
+                .collect();
+            let effect = effect.boxed();
+            found.push(Law { name, effect, card: card.clone(), values, free });
+        }
+    }
+    found
+}
+
+impl Law {
+    /// Coefficients that may be fitted.
+    pub fn coefficients(&self) -> Vec<usize> {
+        let linear = |&&i: &&usize| self.card.knobs[i].role == Role::Coefficient;
+        self.free.iter().filter(linear).copied().collect()
+    }
+
+    /// One column per coefficient; a law without one is a column itself.
+    pub fn columns(&self, z: &[f64]) -> Vec<Vec<f64>> {
+        let coefficients = self.coefficients();
+        if coefficients.is_empty() {
+            return vec![self.course(&self.values, z)];
+        }
+        coefficients
+            .iter()
+            .map(|&one| {
+                let mut values = self.values.clone();
+                coefficients.iter().for_each(|&i| values[i] = f64::from(u8::from(i == one)));
+                self.course(&values, z)
+            })
+            .collect()
+    }
+
+    /// w along a course of the coordinate; what is not finite is 0.
+    pub fn course(&self, values: &[f64], z: &[f64]) -> Vec<f64> {
+        let lanes = 8;
+        let packs = z.len().div_ceil(lanes);
+        let knobs: Vec<F64x8> =
+            (0..packs).flat_map(|_| values.iter().map(|&value| F64x8::constant(value))).collect();
+        let coordinates: Vec<F64x8> = (0..packs)
+            .map(|pack| {
+                let mut at = F64x8::constant(0.0);
+                for (lane, z) in z[pack * lanes..].iter().take(lanes).enumerate() {
+                    at.0[lane] = *z;
+                }
+                at
+            })
+            .collect();
+        let rate = vec![F64x8::constant(0.0); packs];
+        let block = EffectBlock {
+            packs,
+            knobs: &knobs,
+            coordinates: &coordinates,
+            rate: &rate,
+            has_rate: false,
+            states: &[],
+        };
+        let mut w = rate.clone();
+        self.effect.answer(EffectCall::F64(&block, &mut w, &mut []));
+        let finite = |v: f64| if v.is_finite() { v } else { 0.0 };
+        (0..z.len()).map(|k| finite(w[k / lanes].0[k % lanes])).collect()
+    }
+
+    /// Slopes of w along every free knob, by central differences: knobs are few, and an effect's law
+    /// is a formula.
+    pub fn slopes(&self, z: &[f64]) -> Vec<Vec<f64>> {
+        let coefficients = self.coefficients();
+        self.free
+            .iter()
+            .map(|&i| {
+                let knob = self.values[i];
+                let linear = coefficients.contains(&i);
+                let h =
+                    if linear { 1e-4 * knob.abs().max(1e-4) } else { 1e-4 * knob.abs().max(1e-9) };
+                let at = |sign: f64| {
+                    let mut values = self.values.clone();
+                    values[i] += sign * h;
+                    self.course(&values, z)
+                };
+                let (up, down) = (at(1.0), at(-1.0));
+                up.iter().zip(&down).map(|(a, b)| (a - b) / (2.0 * h)).collect()
+            })
+            .collect()
+    }
+}

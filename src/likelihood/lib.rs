@@ -1,0 +1,53 @@
+//! The likelihood of a model, with noise at its sensors and inside its plant.
+//!
+//! ```text
+//! System, Record -- predictor --> Predictor -- follow --> innovations and a frozen linearisation
+//! linearisation -- replay --> log likelihood, its gradient, smoothed states
+//! replay -- select --> intensities of the noise -- missing --> the missing force as a signal
+//! replay -- tangent --> what laws at each place would explain -- places --> ranked places
+//! ```
+//!
+//! log L = -1/2 sum( log det(2 pi S) + e' S^-1 e ), e being what the predictor did not foresee
+//! (Ljung, "System Identification", 2nd ed., 1999, sections 3.2 and 7.4; Kristensen, Madsen and
+//! Jorgensen, Automatica 40, 2004). A free run with coloured noise at the outputs is the special case
+//! without noise inside the plant ([`NoiseModel`]); both compete on the same data by the same criterion.
+
+// examples say `lacuna::`
+extern crate self as lacuna;
+
+use lacuna_core::{data, effect, evaluate, fault, optimise, real, register, system};
+
+mod autoregressive;
+mod backward;
+mod error;
+mod evidence;
+mod follow;
+mod hypothesis;
+mod intensities;
+mod kalman;
+mod laws;
+mod missing;
+mod model;
+mod noise;
+mod path;
+mod places;
+mod predictor;
+mod ranked;
+mod replay;
+mod screen;
+mod select;
+mod sets;
+mod share;
+mod tangent;
+
+pub use autoregressive::Autoregression;
+pub use error::LikelihoodError;
+pub use missing::{Explained, MissingForce};
+pub use model::{Fitted, NoiseModel};
+pub use noise::{Component, Noise, Slow};
+pub use places::places;
+pub use predictor::{Innovations, Predictor};
+pub use ranked::{FittedLaws, RankedPlace, RankedPlaces};
+
+#[cfg(test)]
+mod tests;

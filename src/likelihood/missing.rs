@@ -1,0 +1,214 @@
+//! The missing force as a signal: a smoother with a random walk on one channel, no law assumed.
+//!
+//! x[k+1] = F(x, u, m), m[k+1] = m[k] + increments, y = h(x) + v: the variances of increments and of v
+//! by maximum likelihood, then E(m[k] | all y) and its standard deviation, and the share that each
+//! coordinate, along the smoothed states, explains of it. A picture and a proposer, no judge: a smoother
+//! blurs steps, and an offset of the channel is part of the force.
+//! Sources: Rauch, Tung and Striebel, AIAA J. 3, 1965; Durbin and Koopman, 2012, ch. 4.
+
+use rayon::prelude::*;
+
+use super::error::LikelihoodError;
+use super::follow::Wanted;
+use super::intensities::{concentrated, most_likely};
+use super::noise::{Layout, Noise, Slow};
+use super::path::Path;
+use super::predictor::{Predictor, column, starts};
+use super::replay::Pass;
+use super::share::share;
+use crate::system::Transition;
+
+/// Sizes that the walk is begun with, in units of the channel's force scale, and the measurement
+/// noise in units of the outputs' spreads.
+const SIZES: [f64; 4] = [1e-8, 1e-6, 1e-4, 1e-2];
+const NOISES: [f64; 4] = [1e-8, 1e-6, 1e-4, 1e-2];
+
+/// Log likelihood that two channels may differ by and still explain alike: odds of 20 to 1, Jeffreys'
+/// bound of strong evidence ("Theory of Probability", 1961, appendix B).
+const ALIKE: f64 = 3.0;
+
+/// Samples left out at both ends of the record: a smoother knows one side only there.
+const ENDS: f64 = 0.01;
+
+/// One channel's missing force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MissingForce {
+    /// Channel or input that it would enter.
+    pub channel: String,
+    /// Its unit.
+    pub unit: String,
+    /// Root mean square of the force about 0, in its unit.
+    pub rms: f64,
+    /// How much more likely the record is with it than with measurement noise alone (natural
+    /// logarithm).
+    pub gain: f64,
+    /// The smoothed force, sample by sample.
+    pub values: Vec<f64>,
+    /// Its standard deviation, sample by sample.
+    pub band: Vec<f64>,
+    /// What explains it, the largest share first.
+    pub explained_by: Vec<Explained>,
+    /// Other channels that explain the record as well.
+    pub alike: Vec<String>,
+}
+
+/// The share of a missing force that one coordinate explains.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Explained {
+    /// Coordinate.
+    pub coordinate: String,
+    /// Its unit.
+    pub unit: String,
+    /// R^2 on data not used to fit the curve, between 0 and 1.
+    pub share: f64,
+    /// The curve: coordinate and force.
+    pub curve: Vec<(f64, f64)>,
+    /// The coordinate along the smoothed states, sample by sample.
+    pub values: Vec<f64>,
+}
+
+impl MissingForce {
+    /// Whether the record calls for it: odds of more than 20 to 1 against measurement noise alone.
+    pub fn is_seen(&self) -> bool {
+        self.gain > ALIKE
+    }
+}
+
+impl Predictor {
+    /// The missing force of every channel and input, the one that is explained best first.
+    ///
+    /// Channels that push as an earlier one does are left out.
+    ///
+    /// # Errors
+    ///
+    /// [`LikelihoodError::Diverges`] if no noise keeps the predictor among the finite numbers.
+    pub fn missing(&self) -> Result<Vec<MissingForce>, LikelihoodError> {
+        let path = self.tracking(&self.model)?;
+        let start = self.white(self.spread.iter().map(|s| s * s + f64::MIN_POSITIVE).collect());
+        let alone = most_likely(&path, &start, &start.components()).1;
+        let channels = self.distinct(&path);
+        let mut found = channels
+            .par_iter()
+            .map(|&c| self.force(&path, c, alone))
+            .collect::<Result<Vec<_>, _>>()?;
+        let values: Vec<(String, f64)> =
+            found.iter().map(|f| (f.channel.clone(), f.gain)).collect();
+        for force in &mut found {
+            let near = |gain: f64| (gain - force.gain).abs() < ALIKE && gain > ALIKE;
+            let others = values.iter().filter(|(name, gain)| *name != force.channel && near(*gain));
+            force.alike = others.map(|(name, _)| name.clone()).collect();
+        }
+        let first = |f: &MissingForce| f.explained_by.first().map_or(0.0, |e| e.share);
+        found.sort_by(|a, b| first(b).total_cmp(&first(a)));
+        Ok(found)
+    }
+
+    fn force(&self, path: &Path, c: usize, alone: f64) -> Result<MissingForce, LikelihoodError> {
+        let mut noise = self.walking(path, c);
+        let mut run = self.run(&self.model, &noise, Wanted::default())?;
+        if run.log_likelihood.is_finite() {
+            noise = most_likely(&run.path, &noise, &noise.components()).0;
+            let gate = Some(self.gate());
+            run = self.run(&self.model, &noise, Wanted { gate, ..Wanted::default() })?;
+        }
+        if let Some(sample) = run.diverged_at {
+            let time = sample as f64 * self.model.plan.sampling_time;
+            return Err(LikelihoodError::Diverges { sample, time });
+        }
+        let (path, layout) = (&run.path, Layout::of(run.path.n, &noise));
+        let smoothed = Pass::of(path, &noise, true).smoothed(path, &noise);
+        let (n, na) = (path.n, layout.len());
+        let values = column(&smoothed.mean, na, n);
+        let band = column(&smoothed.variance, na, n).into_iter().map(f64::sqrt).collect();
+        let states: Vec<f64> = (0..path.len * n)
+            .map(|at| {
+                let (k, i) = (at / n, at % n);
+                path.states[at] - path.jump[at] + smoothed.mean[k * na + i]
+            })
+            .collect();
+        let (channel, unit) = self.forces().swap_remove(c);
+        let rms = (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
+        let explained_by = self.explained(&states, &values)?;
+        let gain = run.log_likelihood - alone;
+        let alike = vec![];
+        Ok(MissingForce { channel, unit, rms, gain, values, band, explained_by, alike })
+    }
+
+    /// The most likely measurement noise and random walk on one channel.
+    fn walking(&self, path: &Path, c: usize) -> Noise {
+        let scale = path.force_scales()[c];
+        let tried = SIZES.iter().flat_map(|size| {
+            NOISES.iter().map(move |left| {
+                let measurement = self.spread.iter().map(|s| left * s * s + f64::MIN_POSITIVE);
+                let mut noise = self.white(measurement.collect());
+                noise.slow[c] = Slow::walk(size * scale * scale);
+                concentrated(path, &noise)
+            })
+        });
+        let best = tried.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(noise, _)| noise);
+        let noise = best.unwrap_or_else(|| self.white(self.spread.clone()));
+        most_likely(path, &noise, &noise.components()).0
+    }
+
+    /// The shares of every coordinate in a force, the largest first; `states` are where to look.
+    fn explained(&self, states: &[f64], force: &[f64]) -> Result<Vec<Explained>, LikelihoodError> {
+        let plan = &self.model.plan;
+        let entries = plan.sources.entries.len();
+        let seen = self.seen(states)?;
+        let n = force.len();
+        let cut = (ENDS * n as f64) as usize;
+        let mut found: Vec<Explained> = (0..plan.sources.named)
+            .filter(|&e| !(0..e).any(|other| plan.rates.same(e, other)))
+            .filter_map(|e| {
+                let values = column(&seen, entries, e);
+                let own = share(&values[cut..n - cut], &force[cut..n - cut])?;
+                let signal = &plan.sources.entries[e].0;
+                Some(Explained {
+                    coordinate: signal.name.clone(),
+                    unit: signal.unit.clone(),
+                    share: own.share,
+                    curve: own.curve,
+                    values,
+                })
+            })
+            .collect();
+        found.sort_by(|a, b| b.share.total_cmp(&a.share));
+        Ok(found)
+    }
+
+    /// The table of sources along given states.
+    fn seen(&self, states: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
+        let (plan, theta) = (&self.model.plan, &self.model.theta);
+        let knobs = plan.knob_values();
+        let given = (&theta[..], &knobs[..]);
+        let plant = Transition::new(&self.system, plan, &self.drive, given, false);
+        let mut plant = plant.ok_or(LikelihoodError::Diverges { sample: 0, time: 0.0 })?;
+        let (n, ny, entries) = (plant.states(), plan.sizes.y, plan.sources.entries.len());
+        let mut seen = vec![f64::NAN; self.len() * entries];
+        let (mut y, mut c) = (vec![0.0; ny], vec![0.0; ny * n]);
+        for (number, segment) in self.drive.segments.iter().enumerate() {
+            plant.start(number);
+            for k in segment.clone() {
+                plant.place(&states[k * n..][..n]);
+                plant.observe(k, &mut y, &mut c, &mut []);
+                plant.see(&mut seen[k * entries..][..entries]);
+            }
+        }
+        Ok(seen)
+    }
+
+    /// Starts each segment where the smoother of a fitted noise finds it.
+    ///
+    /// What is believed beforehand is a guess of the model file; after this it is what the whole
+    /// record says, with the same uncertainty. Every hypothesis that is compared has the same.
+    pub(crate) fn settle(&mut self, path: &Path, noise: &Noise) {
+        let pass = Pass::of(path, noise, true);
+        let layout = Layout::of(path.n, noise);
+        let smoothed = pass.smoothed(path, noise);
+        let nx = self.start.p0.len();
+        let found = starts(path, &smoothed.mean, &layout);
+        if found.iter().flatten().all(|x| x.is_finite()) {
+            self.start.x = found.into_iter().map(|x| x[..nx].to_vec()).collect();
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Noise of a state-space model: what is random at the sensors and inside the plant.
+//!
+//! y = h(x, u) + d + v, v white (variance r), d[k+1] = pole d[k] + increments (sensor wander);
+//! x[k+1] = F(x, u, w + m), w white through the model's channels and inputs (variance q per sample,
+//! held over the sample), m[k+1] = pole m[k] + increments (slow force). A pole of 1 is a random walk
+//! that starts at 0; a smaller one is a stationary process of first order (Ornstein-Uhlenbeck).
+//! Source: Ljung, "System Identification", 2nd ed., sections 4.2 and 4.3.
+
+/// A process of first order: increments of a variance, and a pole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slow {
+    /// Variance of the increments from sample to sample, in the square of the signal's unit;
+    /// 0: there is none.
+    pub variance: f64,
+    /// Share that is left after one sample, above 0 and at most 1.
+    pub pole: f64,
+}
+
+impl Slow {
+    /// None.
+    pub const NONE: Self = Self { variance: 0.0, pole: 1.0 };
+
+    /// A random walk with this variance of increments.
+    pub fn walk(variance: f64) -> Self {
+        Self { variance, pole: 1.0 }
+    }
+
+    /// Whether there is any.
+    pub fn is_active(&self) -> bool {
+        self.variance > 0.0
+    }
+
+    /// Variance at the first sample over that of the increments: one increment for a walk, which
+    /// starts at 0 (a wide start would be an offset that costs nothing), else the stationary one.
+    pub(crate) fn start(&self) -> f64 {
+        if self.pole >= 1.0 { 1.0 } else { 1.0 / (1.0 - self.pole * self.pole) }
+    }
+}
+
+/// Variances of all noise of a model.
+///
+/// # Example
+///
+/// ```
+/// use lacuna::likelihood::{Noise, Slow};
+///
+/// // one output with a sensor noise of 0.1, two channels, the first with a white force of 2
+/// let mut noise = Noise::measurement(vec![0.01], 2);
+/// noise.white[0] = 4.0;
+/// noise.wander[0] = Slow::walk(1e-6);
+/// assert_eq!(noise.count(), 3);
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Noise {
+    /// White measurement noise per output.
+    pub measurement: Vec<f64>,
+    /// White force per own channel, then per input; 0: none.
+    pub white: Vec<f64>,
+    /// Slow force per own channel, then per input.
+    pub slow: Vec<Slow>,
+    /// Wander of the sensor per output.
+    pub wander: Vec<Slow>,
+}
+
+impl Noise {
+    /// Measurement noise alone, for a model with this many channels and inputs together.
+    pub fn measurement(variances: Vec<f64>, forces: usize) -> Self {
+        Self {
+            white: vec![0.0; forces],
+            slow: vec![Slow::NONE; forces],
+            wander: vec![Slow::NONE; variances.len()],
+            measurement: variances,
+        }
+    }
+
+    /// How many numbers it has: variances that are not 0, and poles below 1.
+    pub fn count(&self) -> usize {
+        let slow = self.slow.iter().chain(&self.wander).filter(|slow| slow.is_active());
+        self.measurement.len()
+            + self.white.iter().filter(|&&q| q > 0.0).count()
+            + slow.map(|slow| 1 + usize::from(slow.pole < 1.0)).sum::<usize>()
+    }
+
+    /// Whether anything random enters the plant or wanders.
+    pub fn has_process(&self) -> bool {
+        self.count() > self.measurement.len()
+    }
+
+    /// The components that are there, measurement noise first.
+    pub fn components(&self) -> Vec<Component> {
+        let mut found: Vec<_> = (0..self.measurement.len()).map(Component::Measurement).collect();
+        let active = |slow: &[Slow]| -> Vec<usize> {
+            (0..slow.len()).filter(|&i| slow[i].is_active()).collect()
+        };
+        found.extend((0..self.white.len()).filter(|&c| self.white[c] > 0.0).map(Component::White));
+        found.extend(active(&self.slow).into_iter().map(Component::Slow));
+        found.extend(active(&self.wander).into_iter().map(Component::Wander));
+        found
+    }
+
+    /// The variance of a component.
+    pub fn variance(&self, of: Component) -> f64 {
+        match of {
+            Component::Measurement(o) => self.measurement[o],
+            Component::White(c) => self.white[c],
+            Component::Slow(c) => self.slow[c].variance,
+            Component::Wander(o) => self.wander[o].variance,
+        }
+    }
+
+    /// Sets the variance of a component.
+    pub fn set(&mut self, of: Component, variance: f64) {
+        match of {
+            Component::Measurement(o) => self.measurement[o] = variance,
+            Component::White(c) => self.white[c] = variance,
+            Component::Slow(c) => self.slow[c].variance = variance,
+            Component::Wander(o) => self.wander[o].variance = variance,
+        }
+    }
+
+    /// The same with all variances multiplied.
+    #[must_use]
+    pub(crate) fn times(mut self, factor: f64) -> Self {
+        for component in self.components() {
+            self.set(component, self.variance(component) * factor);
+        }
+        self
+    }
+}
+
+/// One part of the noise.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Component {
+    /// White measurement noise of an output.
+    Measurement(usize),
+    /// White force on a channel or input.
+    White(usize),
+    /// Slow force on a channel or input.
+    Slow(usize),
+    /// Wander of an output's sensor.
+    Wander(usize),
+}
+
+/// Where the slow parts stand in the augmented state: states, slow forces, wanders.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Layout {
+    /// States of model and effects.
+    pub n: usize,
+    /// Channels or inputs with a slow force.
+    pub slow: Vec<usize>,
+    /// Outputs whose sensor wanders.
+    pub wander: Vec<usize>,
+}
+
+impl Layout {
+    pub fn of(n: usize, noise: &Noise) -> Self {
+        let active = |slow: &[Slow]| (0..slow.len()).filter(|&i| slow[i].is_active()).collect();
+        Self { n, slow: active(&noise.slow), wander: active(&noise.wander) }
+    }
+
+    /// Entries of the augmented state.
+    pub fn len(&self) -> usize {
+        self.n + self.slow.len() + self.wander.len()
+    }
+
+    /// The slow parts in their order: entry, and the process.
+    pub fn parts<'a>(&'a self, noise: &'a Noise) -> impl Iterator<Item = (usize, Slow)> + 'a {
+        let slow = self.slow.iter().map(|&c| noise.slow[c]);
+        let wander = self.wander.iter().map(|&o| noise.wander[o]);
+        slow.chain(wander).enumerate().map(|(i, part)| (self.n + i, part))
+    }
+
+    /// Entry of an output's wander.
+    pub fn wander_of(&self, output: usize) -> Option<usize> {
+        let at = self.wander.iter().position(|&o| o == output)?;
+        Some(self.n + self.slow.len() + at)
+    }
+
+    /// The row of an output: its derivatives along the states, and its wander.
+    pub fn row(&self, c: &[f64], output: usize, to: &mut [f64]) {
+        to.fill(0.0);
+        to[..self.n].copy_from_slice(c);
+        if let Some(at) = self.wander_of(output) {
+            to[at] = 1.0;
+        }
+    }
+}

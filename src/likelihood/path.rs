@@ -1,0 +1,80 @@
+//! A linearisation frozen along a path: what a linear replay of the filter needs.
+//!
+//! About the predicted states xm and the filtered ones xp of some run,
+//! x[k+1] = xm[k+1] + A (x - xp) + G (m + w - force), y = h(xm) + C (x - xm) + d + v.
+//! A replay with other variances needs no model: 4000 samples take milliseconds.
+//! Source: Kristensen, Madsen and Jorgensen, Automatica 40, 2004, section 3.
+
+use std::ops::Range;
+
+/// A frozen linearisation; tables are sample by sample, matrices row by row.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Path {
+    /// States, forces (own channels and inputs), outputs, samples.
+    pub n: usize,
+    pub forces: usize,
+    pub outputs: usize,
+    pub len: usize,
+    pub segments: Vec<Range<usize>>,
+    /// Next states along states, and along forces.
+    pub a: Vec<f64>,
+    pub g: Vec<f64>,
+    /// Outputs along states.
+    pub c: Vec<f64>,
+    /// Measured less predicted, without wander; not a number where not measured or left out.
+    pub e: Vec<f64>,
+    /// Filtered less predicted states.
+    pub jump: Vec<f64>,
+    /// Slow forces that the path was run with.
+    pub force: Vec<f64>,
+    /// Filtered states.
+    pub states: Vec<f64>,
+    /// Predicted outputs, without wander.
+    pub predicted: Vec<f64>,
+    /// Variances of the states at the start of a segment.
+    pub p0: Vec<f64>,
+    /// Next states and outputs along parameters, where asked for.
+    pub theta: Vec<f64>,
+    pub c_theta: Vec<f64>,
+    /// Table of sources at the filtered states, where asked for.
+    pub seen: Vec<f64>,
+}
+
+impl Path {
+    pub fn a(&self, k: usize) -> &[f64] {
+        &self.a[k * self.n * self.n..][..self.n * self.n]
+    }
+
+    pub fn g(&self, k: usize) -> &[f64] {
+        &self.g[k * self.n * self.forces..][..self.n * self.forces]
+    }
+
+    /// Row of output `o`.
+    pub fn c(&self, k: usize, o: usize) -> &[f64] {
+        &self.c[(k * self.outputs + o) * self.n..][..self.n]
+    }
+
+    /// The size of a force that moves the states as much from sample to sample as they move:
+    /// rms(g' dx) / mean(g' g), per channel and input.
+    pub fn force_scales(&self) -> Vec<f64> {
+        let (n, nf) = (self.n, self.forces);
+        (0..nf)
+            .map(|c| {
+                let (mut along, mut size, mut count) = (0.0, 0.0, 0);
+                for segment in &self.segments {
+                    for k in segment.start..segment.end.saturating_sub(1) {
+                        let g = self.g(k);
+                        let (now, next) = (&self.states[k * n..][..n], &self.states[(k + 1) * n..]);
+                        let dot: f64 = (0..n).map(|i| g[i * nf + c] * (next[i] - now[i])).sum();
+                        along += dot * dot;
+                        size += (0..n).map(|i| g[i * nf + c].powi(2)).sum::<f64>();
+                        count += 1;
+                    }
+                }
+                let count = count.max(1) as f64;
+                let scale = (along / count).sqrt() / (size / count).max(f64::MIN_POSITIVE);
+                if scale.is_finite() && scale > 0.0 { scale } else { 0.0 }
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,246 @@
+//! Places first, then laws: where something is missing, and what it may be.
+//!
+//! 1. All places are screened by closed-form evidence under the noise of "nothing missing", and, where
+//!    that noise has slow parts, under white noise alone too: a slow force explains a slow cause away.
+//! 2. The leading places get their free curve, and the noise anew under it: the noise of "nothing" has
+//!    eaten the cause. Their evidence counts from there.
+//! 3. At the leading place single laws, pairs and triples are chosen by their Gram matrix and fitted
+//!    exactly, the noise anew under each; single laws are left out again as long as the criterion rises.
+//!    Everything is compared by log L - (numbers) / 2 ln(samples) - ln(sets of that size).
+//!
+//! Sources: Schwarz, Annals of Statistics 6, 1978; Chen and Chen, Biometrika 95, 2008 (sets of a size);
+//! Ljung, "System Identification", 2nd ed., section 16.4.
+
+use rayon::prelude::*;
+
+use super::error::LikelihoodError;
+use super::follow::Wanted;
+use super::hypothesis::{Hypothesis, Part};
+use super::intensities::most_likely;
+use super::noise::{Noise, Slow};
+use super::path::Path;
+use super::predictor::Predictor;
+use super::ranked::{FittedLaws, RankedPlace, RankedPlaces};
+use super::replay::Pass;
+use super::screen::{Screened, Spotted};
+use super::sets::sets;
+use super::tangent::Site;
+use crate::data::Record;
+use crate::system::System;
+
+/// Places that get a noise of their own, and of which the laws are fitted.
+const LEADING: usize = 6;
+const FITTED: usize = 2;
+/// Ranks places and laws of what a system lacks on records of it.
+///
+/// # Errors
+///
+/// As [`Predictor::new`] and [`Predictor::fit_noise`].
+pub fn places(system: &System, records: &[Record]) -> Result<RankedPlaces, LikelihoodError> {
+    let mut predictor = Predictor::new(system, records)?;
+    let first = predictor.choose(&predictor.model)?;
+    predictor.settle(&first.run.path, &first.noise);
+    predictor.places(&first.noise)
+}
+
+/// A place under its own noise.
+struct Led {
+    spot: usize,
+    value: f64,
+    noise: Noise,
+    screened: Screened,
+}
+
+impl Predictor {
+    fn places(&self, noise: &Noise) -> Result<RankedPlaces, LikelihoodError> {
+        let null = self.renewed(&self.model, noise, 2)?;
+        let wanted = Wanted { theta: true, seen: true, gate: Some(self.gate()) };
+        let path = self.run(&self.model, &null.noise, wanted)?.path;
+        let spots = self.spots(&path);
+        let base = Pass::of(&path, &null.noise, false).log_likelihood;
+        let mut noises = vec![null.noise.clone()];
+        noises.extend(self.whitened(&path, &null.noise));
+        let mut led: Vec<Led> =
+            noises.iter().flat_map(|noise| self.led(&path, noise, &spots, base)).collect();
+        led.sort_by(|a, b| b.value.total_cmp(&a.value));
+        let places = self.ranked(&spots, &led);
+        let nothing = Hypothesis {
+            parts: vec![],
+            theta: self.model.theta.clone(),
+            noise: null.noise.clone(),
+            log_likelihood: null.log_likelihood,
+        };
+        let mut fitted: Vec<(Hypothesis, usize)> = vec![];
+        let mut done: Vec<usize> = vec![];
+        for place in led.iter().filter(|led| led.value > 0.0) {
+            if done.iter().filter(|&&s| s != place.spot).count() >= FITTED {
+                break;
+            }
+            done.push(place.spot);
+            fitted.extend(self.fitted(&path, &spots, place));
+        }
+        let sets = self.weighed(&nothing, fitted, &spots);
+        Ok(RankedPlaces { noise: null.noise, log_likelihood: null.log_likelihood, places, sets })
+    }
+
+    /// The noise without its slow parts, a white force on the channel in their place.
+    fn whitened(&self, path: &Path, noise: &Noise) -> Option<Noise> {
+        let any = noise.slow.iter().chain(&noise.wander).any(Slow::is_active);
+        if !any {
+            return None;
+        }
+        let mut white = noise.clone();
+        for (c, scale) in path.force_scales().into_iter().enumerate() {
+            if white.slow[c].is_active() && white.white[c] == 0.0 {
+                white.white[c] = 0.01 * scale * scale;
+            }
+        }
+        white.slow.fill(Slow::NONE);
+        white.wander.fill(Slow::NONE);
+        Some(most_likely(path, &white, &white.components()).0)
+    }
+
+    /// The leading places of a screen, each with the noise that is left beside it; `base` is the log
+    /// likelihood of nothing missing.
+    fn led(&self, path: &Path, noise: &Noise, spots: &[Spotted], base: f64) -> Vec<Led> {
+        let screened = self.screen(path, noise, spots);
+        let own = Pass::of(path, noise, false).log_likelihood;
+        let mut order: Vec<usize> = (0..spots.len()).collect();
+        order.sort_by(|&a, &b| screened[b].value().total_cmp(&screened[a].value()));
+        order.truncate(LEADING);
+        let one = |&spot: &usize| {
+            let (mut screened, mut noise) = (screened[spot].clone(), noise.clone());
+            let mut value = own - base + screened.value();
+            let site = spots[spot].site;
+            if let (Some(curve), Site::Force(c)) = (&screened.curve, site) {
+                let mut without = path.clone();
+                let values: Vec<f64> = curve.amplitudes.iter().copied().collect();
+                let forces = path.forces;
+                for (k, w) in spots[spot].curve(&values).into_iter().enumerate() {
+                    without.force[k * forces + c] -= w;
+                }
+                let (anew, _) = most_likely(&without, &noise, &noise.components());
+                let again = self.screen(path, &anew, &spots[spot..=spot]).swap_remove(0);
+                let level = Pass::of(path, &anew, false).log_likelihood;
+                if level - base + again.value() > value {
+                    value = level - base + again.value();
+                    (screened, noise) = (again, anew);
+                }
+            }
+            Led { spot, value, noise, screened }
+        };
+        order.par_iter().map(one).collect()
+    }
+
+    fn ranked(&self, spots: &[Spotted], led: &[Led]) -> Vec<RankedPlace> {
+        let mut seen = vec![];
+        let mut found = vec![];
+        for place in led {
+            if seen.contains(&place.spot) {
+                continue;
+            }
+            seen.push(place.spot);
+            let spot = &spots[place.spot];
+            let source = spot.source.map(|e| self.model.plan.sources.entries[e].0.name.clone());
+            let curve = place.screened.curve.as_ref();
+            let values = curve.map(|curve| curve.amplitudes.iter().copied());
+            let points = values.map(|values| spot.knots.iter().copied().zip(values).collect());
+            found.push(RankedPlace {
+                into: self.name(spot.site),
+                of: source,
+                log_evidence: place.value,
+                curve: points.unwrap_or_default(),
+            });
+        }
+        found
+    }
+
+    /// Sets of laws of a place, fitted exactly; with each the number of laws that it was chosen from.
+    fn fitted(&self, path: &Path, spots: &[Spotted], place: &Led) -> Vec<(Hypothesis, usize)> {
+        let spot = &spots[place.spot];
+        let theta = &self.model.theta;
+        let starts: Vec<Vec<Part>> = match spot.site {
+            Site::Parameter(p) => vec![vec![Part::Parameter(p)]],
+            _ => {
+                let offset = spots.iter().find(|s| s.site == spot.site && s.source.is_none());
+                sets(path, &place.noise, spot, offset)
+            }
+        };
+        let fit = |parts: Vec<Part>| self.fit(parts, theta, &place.noise);
+        let mut found: Vec<Hypothesis> = starts.into_par_iter().filter_map(fit).collect();
+        let samples = self.observed();
+        let merit = |h: &Hypothesis| h.criterion(samples);
+        found.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
+        // single laws are left out again as long as that is better
+        while let Some(best) = found.first().filter(|best| best.parts.len() > 1).cloned() {
+            let without = |i: usize| {
+                let mut parts = best.parts.clone();
+                parts.remove(i);
+                self.fit(parts, &best.theta, &best.noise)
+            };
+            let less: Vec<Hypothesis> =
+                (0..best.parts.len()).into_par_iter().filter_map(without).collect();
+            let better = less.iter().any(|h| merit(h) > merit(&best));
+            found.extend(less);
+            found.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
+            if !better {
+                break;
+            }
+        }
+        found.into_iter().map(|h| (h, place.spot)).collect()
+    }
+
+    /// All fitted sets by their odds against nothing, with probabilities.
+    fn weighed(
+        &self,
+        nothing: &Hypothesis,
+        fitted: Vec<(Hypothesis, usize)>,
+        spots: &[Spotted],
+    ) -> Vec<FittedLaws> {
+        let samples = self.observed();
+        let base = nothing.criterion(samples);
+        let names = |spot: &Spotted| {
+            let mut names: Vec<&str> = spot.laws.iter().map(|law| law.name).collect();
+            names.dedup();
+            names.len() as f64
+        };
+        // a place among all places, then a set among all sets of its size
+        let mut found: Vec<(f64, Hypothesis)> = fitted
+            .into_iter()
+            .map(|(h, spot)| {
+                let sets = log_choose(names(&spots[spot]).max(1.0), h.parts.len() as f64);
+                let cost = (spots.len() as f64).ln() + sets;
+                (h.criterion(samples) - base - cost, h)
+            })
+            .collect();
+        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let odds: Vec<f64> = found.iter().map(|(odds, _)| *odds).chain([0.0]).collect();
+        let all = super::evidence::log_sum(&odds);
+        let parameters = |h: &Hypothesis| {
+            h.parts
+                .iter()
+                .filter_map(|part| match part {
+                    Part::Parameter(p) => Some((self.name(Site::Parameter(*p)), h.theta[*p])),
+                    Part::Law { .. } => None,
+                })
+                .collect()
+        };
+        found
+            .into_iter()
+            .map(|(log_odds, h)| FittedLaws {
+                laws: self.placed(&h.parts),
+                parameters: parameters(&h),
+                log_likelihood: h.log_likelihood,
+                probability: (log_odds - all).exp(),
+                noise: h.noise,
+                log_odds,
+            })
+            .collect()
+    }
+}
+
+/// ln of the number of sets of `k` out of `n`.
+fn log_choose(n: f64, k: f64) -> f64 {
+    let k = k.min(n);
+    (0..k as usize).map(|i| ((n - i as f64) / (i as f64 + 1.0)).ln()).sum()
+}

@@ -1,0 +1,197 @@
+//! Every place that something missing may have, with its columns: free curve, laws, parameters.
+//!
+//! A place is a channel with a coordinate, an input or output with itself, an offset alone, or a
+//! parameter. Its free curve has hats at quantiles of the filtered coordinate.
+
+use rayon::prelude::*;
+
+use super::evidence::{Evidence, curve_prior, evidence, log_sum};
+use super::laws::{Law, Spot, laws, offsets};
+use super::noise::Noise;
+use super::path::Path;
+use super::predictor::{Predictor, column};
+use super::replay::Pass;
+use super::share::{between, knots};
+use super::tangent::{Site, gram};
+use crate::effect::View;
+use crate::system::Origin;
+
+/// Share of a parameter's value that it may be wrong by, as the unit of its amplitude.
+const PARAMETER: f64 = 0.5;
+
+/// A place and everything that could be there.
+#[derive(Debug, Clone)]
+pub(crate) struct Spotted {
+    pub site: Site,
+    /// Entry of the table of sources, absent where it depends on nothing.
+    pub source: Option<usize>,
+    /// The coordinate along the path.
+    pub z: Vec<f64>,
+    pub knots: Vec<f64>,
+    pub laws: Vec<Law>,
+    /// Size of an amplitude: force, output or parameter.
+    pub scale: f64,
+}
+
+/// What the sums say about a place.
+#[derive(Debug, Clone)]
+pub(crate) struct Screened {
+    /// Evidence of the free curve, where there is one.
+    pub curve: Option<Evidence>,
+    /// The best evidence of a law, averaged over its grid, or of a parameter.
+    pub best: f64,
+}
+
+impl Screened {
+    /// The place's evidence: of its free curve or of its laws, whichever is larger.
+    pub fn value(&self) -> f64 {
+        self.curve.as_ref().map_or(self.best, |curve| curve.value.max(self.best))
+    }
+}
+
+impl Predictor {
+    /// All places along a path with its table of sources and its derivatives along parameters.
+    pub(crate) fn spots(&self, path: &Path) -> Vec<Spotted> {
+        let plan = &self.model.plan;
+        let entries = plan.sources.entries.len();
+        let scales = path.force_scales();
+        let (nw, ny) = (plan.sizes.w, path.outputs);
+        let mut found = vec![];
+        let view = |z: &[f64], own_path: bool| {
+            let mut view = View::new(z, plan.sampling_time);
+            view.own_path = own_path;
+            view
+        };
+        let mut push =
+            |site, source: Option<usize>, z: Vec<f64>, spot: Option<Spot>, scale: f64| {
+                let own_path = matches!(spot, Some(Spot::OwnPath { .. }));
+                let laws = match spot {
+                    Some(spot) => laws(spot, &view(&z, own_path)),
+                    None => vec![],
+                };
+                let knots = knots(&z).unwrap_or_default();
+                found.push(Spotted { site, source, z, knots, laws, scale });
+            };
+        let named = 0..plan.sources.named - 1;
+        let distinct: Vec<usize> =
+            named.filter(|&e| !(0..e).any(|other| plan.rates.same(e, other))).collect();
+        for c in self.distinct(path) {
+            for &e in &distinct {
+                let z = column(&path.seen, entries, e);
+                let own = plan.sources.entries[e].1;
+                let spot = match c < nw {
+                    true => Spot::Channel { velocity: plan.is_velocity(e) },
+                    false if own == Origin::Input(c - nw) => Spot::OwnPath { input: true },
+                    false => continue,
+                };
+                push(Site::Force(c), Some(e), z, Some(spot), scales[c]);
+            }
+        }
+        for o in (0..ny).filter(|&o| self.spread[o] > 0.0) {
+            let source = plan.sources.at(Origin::Output(o));
+            let z = column(&path.predicted, ny, o);
+            let spot = Spot::OwnPath { input: false };
+            push(Site::Output(o), source, z, Some(spot), self.spread[o]);
+        }
+        let ones = vec![1.0; path.len];
+        let offset = |site, scale: f64| Spotted {
+            site,
+            source: None,
+            z: ones.clone(),
+            knots: vec![],
+            laws: offsets(),
+            scale,
+        };
+        let forces = self.distinct(path).into_iter();
+        found.extend(forces.map(|c| offset(Site::Force(c), scales[c])));
+        let outputs = (0..ny).filter(|&o| self.spread[o] > 0.0);
+        found.extend(outputs.map(|o| offset(Site::Output(o), self.spread[o])));
+        for (p, parameter) in plan.signals.parameters.iter().enumerate() {
+            if !parameter.fixed && path.theta.len() + path.c_theta.len() > 0 {
+                let scale = PARAMETER * self.model.theta[p].abs();
+                let site = Site::Parameter(p);
+                let (z, knots, laws) = (ones.clone(), vec![], vec![]);
+                found.push(Spotted { site, source: None, z, knots, laws, scale });
+            }
+        }
+        found
+    }
+
+    /// The sums and evidences of places under a noise.
+    pub(crate) fn screen(&self, path: &Path, noise: &Noise, spots: &[Spotted]) -> Vec<Screened> {
+        let pass = Pass::of(path, noise, false);
+        spots.par_iter().map(|spot| screened(path, &pass, noise, spot)).collect()
+    }
+}
+
+impl Spotted {
+    /// All columns: the hats of the free curve, then each law's coefficients; where each begins.
+    fn columns(&self) -> (Vec<(Site, Vec<f64>)>, Vec<usize>) {
+        let mut columns: Vec<Vec<f64>> = vec![vec![0.0; self.z.len()]; self.knots.len()];
+        if !self.knots.is_empty() {
+            for (k, z) in self.z.iter().enumerate().filter(|(_, z)| z.is_finite()) {
+                let (i, part) = between(&self.knots, *z);
+                columns[i][k] = 1.0 - part;
+                columns[i + 1][k] = part;
+            }
+        }
+        let mut first = vec![];
+        for law in &self.laws {
+            first.push(columns.len());
+            columns.extend(law.columns(&self.z));
+        }
+        first.push(columns.len());
+        if let Site::Parameter(_) = self.site {
+            columns.push(vec![1.0; self.z.len()]);
+        }
+        (columns.into_iter().map(|column| (self.site, column)).collect(), first)
+    }
+
+    /// Values of the free curve along the path.
+    pub fn curve(&self, values: &[f64]) -> Vec<f64> {
+        let at = |z: &f64| {
+            let (i, part) = between(&self.knots, *z);
+            values[i] + part * (values[i + 1] - values[i])
+        };
+        self.z.iter().map(|z| if z.is_finite() { at(z) } else { 0.0 }).collect()
+    }
+}
+
+fn screened(path: &Path, pass: &Pass, noise: &Noise, spot: &Spotted) -> Screened {
+    let (columns, first) = spot.columns();
+    let gram = gram(path, pass, noise, &columns);
+    let part = |range: std::ops::Range<usize>, prior: nalgebra::DMatrix<f64>| {
+        let (from, n) = (range.start, range.len());
+        let square = gram.square.view((from, from), (n, n)).into_owned();
+        evidence(&square, &gram.slope.rows(from, n).into_owned(), &prior)
+    };
+    let curves = spot.knots.len();
+    let curve = (curves > 0).then(|| part(0..curves, curve_prior(curves, spot.scale)));
+    let rms = |column: &[f64]| {
+        (column.iter().map(|v| v * v).sum::<f64>() / column.len().max(1) as f64).sqrt()
+    };
+    let own = |range: std::ops::Range<usize>| {
+        let sizes = range.clone().map(|j| {
+            let size = spot.scale / rms(&columns[j].1).max(f64::MIN_POSITIVE);
+            if size.is_finite() { size * size } else { 0.0 }
+        });
+        let prior =
+            nalgebra::DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(range.len(), sizes));
+        part(range, prior).value
+    };
+    let laws: Vec<f64> = first.windows(2).map(|w| own(w[0]..w[1])).collect();
+    let mut names: Vec<&str> = spot.laws.iter().map(|law| law.name).collect();
+    names.dedup();
+    let averaged = names.iter().map(|name| {
+        let of = spot.laws.iter().zip(&laws).filter(|(law, _)| law.name == *name);
+        let values: Vec<f64> = of.map(|(_, value)| *value).collect();
+        log_sum(&values) - (values.len() as f64).ln()
+    });
+    let mut best = averaged.fold(f64::NEG_INFINITY, f64::max);
+    if let Site::Parameter(_) = spot.site {
+        let j = columns.len() - 1;
+        let prior = nalgebra::DMatrix::from_element(1, 1, spot.scale * spot.scale);
+        best = part(j..j + 1, prior).value;
+    }
+    Screened { curve, best }
+}

@@ -1,0 +1,286 @@
+//! Which noise there is: forward selection of components by Schwarz's criterion.
+//!
+//! Measurement noise is always there. White forces, slow forces and wander are added one at a time,
+//! the one that raises log L most, as long as log L rises by more than (numbers added) / 2 ln(samples);
+//! what has become superfluous is taken out again, and the linearisation is renewed at the end.
+//! Sources: Schwarz, Annals of Statistics 6, 1978; Kristensen, Madsen and Jorgensen, Automatica 40, 2004.
+
+use rayon::prelude::*;
+
+use super::error::LikelihoodError;
+use super::follow::{Followed, Wanted};
+use super::intensities::{concentrated, most_likely};
+use super::noise::{Component, Noise, Slow};
+use super::path::Path;
+use super::predictor::{Model, Predictor};
+use super::replay::Pass;
+
+/// Sizes that a component is begun with, in units of its signal's variance.
+const SIZES: [f64; 5] = [1e-8, 1e-6, 1e-4, 1e-2, 1.0];
+/// What of the measurement noise may turn out to be something else.
+const LEFT: [f64; 2] = [1.0, 1e-2];
+/// Components that are fitted in every round, of all that are looked at.
+const FITTED: usize = 3;
+/// Components at most: each is named in the result, and a record tells no more apart.
+const MOST: usize = 6;
+/// Poles that a slow component may have beside 1.
+const POLES: [f64; 6] = [0.3, 0.6, 0.8, 0.9, 0.97, 0.99];
+/// Renewals of the linearisation at most, and the change of log L at which it is settled.
+const RENEWED: usize = 3;
+const SETTLED: f64 = 0.5;
+
+/// A noise, what it makes likely, and the run that belongs to it.
+#[derive(Debug, Clone)]
+pub(crate) struct Chosen {
+    pub noise: Noise,
+    pub log_likelihood: f64,
+    pub run: Followed,
+}
+
+impl Predictor {
+    /// The noise that the data call for under a model, from measurement noise alone.
+    pub(crate) fn choose(&self, model: &Model) -> Result<Chosen, LikelihoodError> {
+        let tracking = self.tracking(model)?;
+        let mut chosen = self.renewed(model, &self.selected(&tracking), RENEWED)?;
+        if !chosen.log_likelihood.is_finite() {
+            // the path of the selected noise leaves the numbers: stay with one that tracks
+            chosen = self.renewed(model, &self.tracking_noise(&tracking), RENEWED)?;
+        }
+        let fewer = self.pruned(&chosen.run.path, chosen.noise.clone());
+        if fewer != chosen.noise {
+            let other = self.renewed(model, &fewer, 1)?;
+            let penalty = 0.5 * self.observed().ln();
+            let lost = chosen.log_likelihood - other.log_likelihood;
+            if lost < penalty * (chosen.noise.count() as f64 - other.noise.count() as f64) {
+                chosen = other;
+            }
+        }
+        Ok(chosen)
+    }
+
+    /// The same components fitted anew under another model.
+    pub(crate) fn renewed(
+        &self,
+        model: &Model,
+        noise: &Noise,
+        times: usize,
+    ) -> Result<Chosen, LikelihoodError> {
+        let gate = Some(self.gate());
+        let wanted = |gate| Wanted { gate, ..Wanted::default() };
+        // the gate needs a noise of the right size first
+        let mut run = self.run(model, noise, wanted(None))?;
+        let mut best: Option<Chosen> = None;
+        let mut noise = noise.clone();
+        for _ in 0..times.max(1) {
+            if run.log_likelihood.is_finite() {
+                noise = most_likely(&run.path, &noise, &noise.components()).0;
+            }
+            run = self.run(model, &noise, wanted(gate))?;
+            let value = run.log_likelihood;
+            let gained = best.as_ref().map_or(f64::INFINITY, |b| value - b.log_likelihood);
+            if gained > 0.0 || best.is_none() {
+                let found =
+                    Chosen { noise: noise.clone(), log_likelihood: value, run: run.clone() };
+                best = Some(found);
+            }
+            if !(gained > SETTLED) {
+                break;
+            }
+        }
+        best.ok_or(LikelihoodError::Diverges { sample: 0, time: 0.0 })
+    }
+
+    /// How many outputs were measured.
+    pub(crate) fn observed(&self) -> f64 {
+        self.measured.iter().filter(|y| y.is_finite()).count().max(1) as f64
+    }
+
+    /// Noise under which the filter follows the data closely: a good path to linearise about.
+    fn tracking_noise(&self, path: &Path) -> Noise {
+        let mut noise = self.white(self.spread.iter().map(|s| 1e-4 * s * s + tiny()).collect());
+        for (q, scale) in noise.white.iter_mut().zip(path.force_scales()) {
+            *q = 0.1 * scale * scale;
+        }
+        noise
+    }
+
+    /// The path of a filter that follows the data closely.
+    pub(crate) fn tracking(&self, model: &Model) -> Result<Path, LikelihoodError> {
+        let wide = self.white(self.spread.iter().map(|s| s * s + tiny()).collect());
+        let mut run = self.run(model, &wide, Wanted::default())?;
+        for _ in 0..2 {
+            let noise = self.tracking_noise(&run.path);
+            let next = self.run(model, &noise, Wanted::default())?;
+            if next.diverged_at.is_some() {
+                break;
+            }
+            run = next;
+        }
+        match run.diverged_at {
+            None => Ok(run.path),
+            Some(sample) => {
+                let time = sample as f64 * self.model.plan.sampling_time;
+                Err(LikelihoodError::Diverges { sample, time })
+            }
+        }
+    }
+
+    /// Forward selection on a path.
+    fn selected(&self, path: &Path) -> Noise {
+        let penalty = 0.5 * self.observed().ln();
+        let start = self.white(self.spread.iter().map(|s| s * s + tiny()).collect());
+        let (mut noise, mut value) = most_likely(path, &start, &start.components());
+        let scales = path.force_scales();
+        for _ in 0..MOST {
+            let Some((next, better)) = self.added(path, &noise, &scales) else { break };
+            let more = (next.count() - noise.count()) as f64;
+            if !(better - value > penalty * more) {
+                break;
+            }
+            (noise, value) = (next, better);
+        }
+        self.poled(path, noise, value)
+    }
+
+    /// The most likely noise with one component more.
+    fn added(&self, path: &Path, noise: &Noise, scales: &[f64]) -> Option<(Noise, f64)> {
+        let mut looked: Vec<(Noise, f64)> = self
+            .more(path, noise)
+            .into_par_iter()
+            .flat_map_iter(|(component, pole)| {
+                let scale = match component {
+                    Component::White(c) | Component::Slow(c) => scales[c],
+                    Component::Measurement(o) | Component::Wander(o) => self.spread[o],
+                };
+                let tried = SIZES.iter().flat_map(move |size| {
+                    LEFT.iter().map(move |left| {
+                        let mut noise = noise.clone();
+                        noise.measurement.iter_mut().for_each(|r| *r *= left);
+                        place(&mut noise, component, size * scale * scale, pole);
+                        concentrated(path, &noise)
+                    })
+                });
+                tried.filter(|(_, value)| value.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1))
+            })
+            .collect();
+        looked.sort_by(|a, b| b.1.total_cmp(&a.1));
+        looked.truncate(FITTED);
+        let fitted: Vec<_> = looked
+            .into_par_iter()
+            .map(|(noise, _)| most_likely(path, &noise, &noise.components()))
+            .collect();
+        fitted.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Components that are not there yet, with the pole that they begin with. Forces that push the
+    /// same way are one.
+    fn more(&self, path: &Path, noise: &Noise) -> Vec<(Component, f64)> {
+        let mut found = vec![];
+        for c in self.distinct(path) {
+            if noise.white[c] == 0.0 {
+                found.push((Component::White(c), 1.0));
+            }
+            if !noise.slow[c].is_active() {
+                found.extend([(Component::Slow(c), 1.0), (Component::Slow(c), 0.9)]);
+            }
+        }
+        for o in 0..path.outputs {
+            if self.spread[o] > 0.0 && !noise.wander[o].is_active() {
+                found.extend([(Component::Wander(o), 1.0), (Component::Wander(o), 0.8)]);
+            }
+        }
+        found
+    }
+
+    /// Forces of which none pushes as an earlier one does, and none does nothing.
+    pub(crate) fn distinct(&self, path: &Path) -> Vec<usize> {
+        let (n, nf) = (path.n, path.forces);
+        let mut kept: Vec<usize> = vec![];
+        for c in 0..nf {
+            let dot = |a: usize, b: usize| {
+                path.g.chunks_exact(n * nf).fold(0.0, |sum, g| {
+                    sum + (0..n).map(|i| g[i * nf + a] * g[i * nf + b]).sum::<f64>()
+                })
+            };
+            let own = dot(c, c);
+            let alike = |&other: &usize| {
+                let both = dot(c, other);
+                both * both > (1.0 - 1e-9) * own * dot(other, other)
+            };
+            if own > 0.0 && !kept.iter().any(alike) {
+                kept.push(c);
+            }
+        }
+        kept
+    }
+
+    /// The same noise with the poles that its slow parts call for.
+    fn poled(&self, path: &Path, mut noise: Noise, mut value: f64) -> Noise {
+        let penalty = 0.5 * self.observed().ln();
+        let slow = |c: &Component| matches!(c, Component::Slow(_) | Component::Wander(_));
+        for component in noise.components().into_iter().filter(slow) {
+            let now = pole(&noise, component);
+            let tried: Vec<_> = POLES
+                .par_iter()
+                .chain([1.0].par_iter())
+                .filter(|&&other| other != now)
+                .map(|&other| {
+                    let mut noise = noise.clone();
+                    let variance = noise.variance(component);
+                    place(&mut noise, component, variance, other);
+                    most_likely(path, &noise, &noise.components())
+                })
+                .collect();
+            let merit = |noise: &Noise, value: f64| value - penalty * noise.count() as f64;
+            let best =
+                tried.into_iter().max_by(|a, b| merit(&a.0, a.1).total_cmp(&merit(&b.0, b.1)));
+            if let Some((other, better)) = best
+                && merit(&other, better) > merit(&noise, value)
+            {
+                (noise, value) = (other, better);
+            }
+        }
+        noise
+    }
+
+    /// The noise without what it can do without.
+    fn pruned(&self, path: &Path, mut noise: Noise) -> Noise {
+        let penalty = 0.5 * self.observed().ln();
+        let mut value = Pass::of(path, &noise, false).log_likelihood;
+        let process = |c: &Component| !matches!(c, Component::Measurement(_));
+        for component in noise.components().into_iter().filter(process) {
+            if noise.components().iter().filter(|c| process(c)).count() < 2 {
+                break;
+            }
+            let mut less = noise.clone();
+            place(&mut less, component, 0.0, 1.0);
+            let (less, worse) = most_likely(path, &less, &less.components());
+            if value - worse < penalty * (noise.count() - less.count()) as f64 {
+                (noise, value) = (less, worse);
+            }
+        }
+        noise
+    }
+}
+
+/// Sets a component, with its pole.
+fn place(noise: &mut Noise, component: Component, variance: f64, pole: f64) {
+    match component {
+        Component::Slow(c) => noise.slow[c] = Slow { variance, pole },
+        Component::Wander(o) => noise.wander[o] = Slow { variance, pole },
+        _ => noise.set(component, variance),
+    }
+}
+
+fn pole(noise: &Noise, component: Component) -> f64 {
+    match component {
+        Component::Slow(c) => noise.slow[c].pole,
+        Component::Wander(o) => noise.wander[o].pole,
+        _ => 1.0,
+    }
+}
+
+/// A variance that is none, but keeps everything finite.
+fn tiny() -> f64 {
+    1e-30
+}

@@ -1,0 +1,118 @@
+//! Tangents of the innovations along many laws at one site: Gram matrix and score in one pass.
+//!
+//! With the gains K held, a law w = theta phi at a force site moves the predicted state by d and the
+//! innovations by t = -C d (- phi at an output's own site): d+ = d- + K t, d-[k+1] = F d+ + G phi(k),
+//! z-tangent L^-1 t. phi is evaluated at the filtered state, which depends on the past only: under the
+//! null the score sum(t' z) is a martingale of mean zero, in closed loop too. A parameter's columns are
+//! dF/dtheta and dh/dtheta.
+//! Sources: Ljung, "System Identification", 2nd ed., sections 10.3 and 13.4; Astrom, Automatica 16, 1980.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::noise::Noise;
+use super::path::Path;
+use super::replay::Pass;
+
+/// Rows that are multiplied into the Gram matrix at once.
+const ROWS: usize = 64;
+
+/// Where something enters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Site {
+    /// An own channel, or an input counted behind them.
+    Force(usize),
+    /// An output.
+    Output(usize),
+    /// A parameter.
+    Parameter(usize),
+}
+
+/// Sums over all innovations: T' T and T' z.
+#[derive(Debug, Clone)]
+pub(crate) struct Gram {
+    pub square: DMatrix<f64>,
+    pub slope: DVector<f64>,
+}
+
+/// The sums for several columns, each at its site; a parameter's column is 1.
+pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[(Site, Vec<f64>)]) -> Gram {
+    let (m, n, nf, ny) = (columns.len(), path.n, path.forces, path.outputs);
+    let na = pass.layout.len();
+    let nt = path.theta.len() / (path.len * n).max(1);
+    let mut to = Gram { square: DMatrix::zeros(m, m), slope: DVector::zeros(m) };
+    // candidates side by side: row i holds entry i of every candidate's state
+    let (mut d, mut next) = (vec![0.0; na * m], vec![0.0; na * m]);
+    let mut block = DMatrix::<f64>::zeros(ROWS, m);
+    let mut filled = 0;
+    let (mut row, mut t) = (vec![0.0; na], vec![0.0; m]);
+    for segment in &path.segments {
+        d.fill(0.0);
+        for k in segment.clone() {
+            for o in 0..ny {
+                let at = k * ny + o;
+                if !pass.z[at].is_finite() {
+                    continue;
+                }
+                pass.layout.row(path.c(k, o), o, &mut row);
+                t.fill(0.0);
+                for (i, c) in row.iter().enumerate().filter(|(_, c)| **c != 0.0) {
+                    t.iter_mut().zip(&d[i * m..][..m]).for_each(|(t, d)| *t -= c * d);
+                }
+                for (t, (site, phi)) in t.iter_mut().zip(columns) {
+                    match *site {
+                        Site::Output(own) if own == o => *t -= phi[k],
+                        Site::Parameter(p) => *t -= path.c_theta[at * nt + p] * phi[k],
+                        _ => {}
+                    }
+                }
+                let gain = &pass.k[at * na..][..na];
+                for (i, gain) in gain.iter().enumerate() {
+                    d[i * m..][..m].iter_mut().zip(&t).for_each(|(d, t)| *d += gain * t);
+                }
+                let over = 1.0 / pass.s[at].sqrt();
+                for (j, t) in t.iter().enumerate() {
+                    let value = t * over;
+                    block[(filled, j)] = value;
+                    to.slope[j] += value * pass.z[at];
+                }
+                filled += 1;
+                if filled == ROWS {
+                    to.square.gemm_tr(1.0, &block, &block, 1.0);
+                    filled = 0;
+                }
+            }
+            if k + 1 == segment.end {
+                continue;
+            }
+            next.fill(0.0);
+            let (a, g) = (path.a(k), path.g(k));
+            for i in 0..n {
+                let to = &mut next[i * m..][..m];
+                for j in 0..n {
+                    let f = a[i * n + j];
+                    to.iter_mut().zip(&d[j * m..][..m]).for_each(|(to, d)| *to += f * d);
+                }
+                for (l, &c) in pass.layout.slow.iter().enumerate() {
+                    let f = g[i * nf + c];
+                    to.iter_mut().zip(&d[(n + l) * m..][..m]).for_each(|(to, d)| *to += f * d);
+                }
+                for (to, (site, phi)) in to.iter_mut().zip(columns) {
+                    match *site {
+                        Site::Force(c) => *to += g[i * nf + c] * phi[k],
+                        Site::Parameter(p) => *to += path.theta[(k * n + i) * nt + p] * phi[k],
+                        Site::Output(_) => {}
+                    }
+                }
+            }
+            for (i, part) in pass.layout.parts(noise) {
+                for j in 0..m {
+                    next[i * m + j] = part.pole * d[i * m + j];
+                }
+            }
+            std::mem::swap(&mut d, &mut next);
+        }
+    }
+    let rest = block.rows(0, filled).into_owned();
+    to.square.gemm_tr(1.0, &rest, &rest, 1.0);
+    to
+}

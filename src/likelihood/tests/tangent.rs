@@ -1,0 +1,56 @@
+//! Tangents of the innovations against differences of the filter itself.
+
+use super::plants::{GANTRY, Sizes, excitation, simulate, system, with};
+use crate::follow::Wanted;
+use crate::noise::Slow;
+use crate::predictor::{Predictor, column};
+use crate::replay::Pass;
+use crate::tangent::{Site, gram};
+
+#[test]
+fn scores_are_slopes_of_the_likelihood() {
+    let plant = system(GANTRY);
+    let sizes = Sizes { white: vec![2.0], measurement: vec![0.002, 0.004], ..Sizes::default() };
+    let record = simulate(&plant, &excitation(400, 0.02, 20.0, 2), &sizes, 3);
+    let predictor = Predictor::new(&plant, std::slice::from_ref(&record)).unwrap();
+    let mut noise = predictor.white(vec![4e-6, 1.6e-5]);
+    noise.white[0] = 4.0;
+    noise.slow[1] = Slow::walk(1e-4);
+    let wanted = Wanted { theta: true, seen: true, gate: None };
+    let run = predictor.run(&predictor.model, &noise, wanted).unwrap();
+    let path = &run.path;
+    let entries = predictor.model.plan.sources.entries.len();
+    let speed = column(&path.seen, entries, 0);
+    let columns = vec![
+        (Site::Force(0), speed),
+        (Site::Output(1), vec![1.0; path.len]),
+        (Site::Parameter(1), vec![1.0; path.len]),
+    ];
+    let pass = Pass::of(path, &noise, false);
+    let sums = gram(path, &pass, &noise, &columns);
+    let exact = |sign: f64, which: usize, size: f64| {
+        let effect = match which {
+            0 => format!(
+                "into = \"on_trolley\"\nof = \"trolley_speed\"\neffect.linear = {{ coefficient = {:?} }}",
+                sign * size
+            ),
+            _ => format!("into = \"angle\"\neffect.bias = {{ value = {:?} }}", sign * size),
+        };
+        let mut moved = match which {
+            2 => Predictor::new(&plant, std::slice::from_ref(&record)).unwrap(),
+            _ => Predictor::new(&with(GANTRY, &effect), std::slice::from_ref(&record)).unwrap(),
+        };
+        moved.start = predictor.start.clone();
+        if which == 2 {
+            moved.model.theta[1] += sign * size;
+        }
+        moved.run(&moved.model, &noise, Wanted::default()).unwrap().log_likelihood
+    };
+    for (which, size) in [(0, 1e-3), (1, 1e-6), (2, 1e-4)] {
+        let difference = (exact(1.0, which, size) - exact(-1.0, which, size)) / (2.0 * size);
+        // d log L / d theta = -T'z; gains are held in it
+        let off = (-sums.slope[which] - difference).abs();
+        let size = sums.square[(which, which)].sqrt();
+        assert!(off < 0.05 * size, "{which}: {} {difference} {size}", -sums.slope[which]);
+    }
+}
