@@ -9,6 +9,7 @@ mod calls;
 mod linear;
 mod lists;
 mod model_files;
+mod outputs;
 mod pipes;
 mod plan;
 mod records;

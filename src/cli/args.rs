@@ -34,6 +34,9 @@ pub struct Common {
     /// One JSON document on stdout, and nothing else there
     #[arg(long, global = true)]
     pub json: bool,
+    /// Replace files that lacuna did not write, too; what the call reads, and records, never
+    #[arg(long, global = true)]
+    pub force: bool,
     /// No text beside the result
     #[arg(long, global = true, conflicts_with = "verbose")]
     pub quiet: bool,

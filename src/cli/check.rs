@@ -6,6 +6,7 @@ use super::args::Check;
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
+use super::outputs;
 use lacuna::diagnose::Diagnosis;
 use lacuna::digits::number;
 use lacuna::report::{cause_document, sentences};
@@ -14,6 +15,7 @@ use lacuna::report::{cause_document, sentences};
 const REJECTED: u8 = 3;
 
 pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
+    outputs::distinct(&args.on.data, &[])?;
     let (system, want) = input::model(&args.on.model)?;
     let records = input::records(&args.on.data, &want, &args.on.columns, look)?;
     look.hear_interrupts()?;

@@ -24,6 +24,8 @@ const LONG: Duration = Duration::from_secs(10);
 pub struct Console {
     /// One JSON document on stdout.
     pub json: bool,
+    /// Whether files that lacuna did not write may be replaced.
+    pub force: bool,
     quiet: bool,
     /// Every step is to be told in a line of its own.
     verbose: bool,
@@ -80,7 +82,16 @@ impl Console {
         bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()).progress_chars("━━╌"));
         let (json, quiet, verbose) = (common.json, common.quiet, common.verbose);
         let course = Mutex::default();
-        Self { json, quiet, verbose, course, lively, bar, started: Instant::now() }
+        Self {
+            json,
+            force: common.force,
+            quiet,
+            verbose,
+            course,
+            lively,
+            bar,
+            started: Instant::now(),
+        }
     }
 
     /// Text for people, beside the result.

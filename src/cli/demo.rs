@@ -2,9 +2,9 @@
 
 use super::args::Demo;
 use super::console::Console;
-use super::diagnose::{Results, look_for};
+use super::diagnose::{FILES, Results, look_for};
 use super::failure::Failure;
-use super::{input, provenance};
+use super::{input, outputs, provenance};
 use lacuna::data::{Record, Table};
 use lacuna::diagnose::Diagnosis;
 use lacuna::file::{Format, parse};
@@ -16,6 +16,7 @@ const EST: &[u8] = include_bytes!("demo/est.csv.gz");
 const TEST: &[u8] = include_bytes!("demo/test.csv.gz");
 
 pub fn run(args: &Demo, seed: u64, look: &Console) -> Result<u8, Failure> {
+    outputs::check(&[], &outputs::within(&args.out, &FILES), look)?;
     let system = parse(MODEL, "demo/model.toml", Format::Toml)?;
     let want = input::want(&system)?;
     let read = |bytes: &[u8], name: &str| -> Result<Record, Failure> {

@@ -6,16 +6,18 @@ use std::path::Path;
 use super::args::Diagnose as Args;
 use super::console::{Console, print};
 use super::failure::Failure;
+use super::outputs::{self, cannot_write};
 use super::{input, provenance};
 use lacuna::data::Record;
 use lacuna::diagnose::{Diagnosis, Finding};
-use lacuna::file::save_with;
+use lacuna::file::{save_with, write_text};
 use lacuna::report::{Beside, Document, Provenance, Report, sentences};
 
 /// Files that a diagnosis leaves in its folder.
 const MODEL: &str = "extended.toml";
 const PAGE: &str = "report.html";
 const DOCUMENT: &str = "diagnosis.json";
+pub const FILES: [&str; 3] = [PAGE, MODEL, DOCUMENT];
 
 /// What results are called, where they go, and where they are from.
 pub struct Results<'a> {
@@ -25,10 +27,17 @@ pub struct Results<'a> {
 }
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
+    let apart: Vec<_> = args.test.iter().cloned().collect();
+    outputs::distinct(&args.on.data, &[("--test", &apart)])?;
+    let mut inputs = outputs::paths(&[&args.on.data, &apart]);
+    inputs.push(&args.on.model);
+    outputs::check(&inputs, &outputs::within(&args.out, &FILES), look)?;
     let (system, want) = input::model(&args.on.model)?;
     let columns = &args.on.columns;
     let records = input::records(&args.on.data, &want, columns, look)?;
     if columns.repair {
+        let names = (0..records.len()).map(|k| args.out.join(input::repaired(k)));
+        outputs::apart(&inputs, &names.collect::<Vec<_>>())?;
         fs::create_dir_all(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
         input::keep_repaired(&records, columns, &args.out, look)?;
     }
@@ -67,7 +76,8 @@ pub fn look_for(
     let finding = diagnosis.run(records, test, look)?;
     look.clear();
     let headline = sentences::headline(&finding);
-    let header: Vec<String> = headline.lines().map(str::to_string).chain(from.same()).collect();
+    let mut header = vec!["Written by `lacuna diagnose`.".to_string()];
+    header.extend(headline.lines().map(str::to_string).chain(from.same()));
     save_with(&finding.extended, &out.join(MODEL), &header)?;
     let page = out.join(PAGE);
     let report = Report::of(&finding).titled(title).from(&from);
@@ -75,7 +85,7 @@ pub fn look_for(
     let beside = Beside { extended_model: MODEL, report: PAGE };
     let document = Document::of(&finding, beside, &from).text().map_err(Failure::unwritable)?;
     let json = out.join(DOCUMENT);
-    fs::write(&json, &document).map_err(|error| cannot_write(&json, &error))?;
+    write_text(&json, &document).map_err(|error| cannot_write(&json, &error))?;
     tell(&finding, out, look);
     if look.json {
         print(&document);
@@ -96,8 +106,4 @@ fn tell(finding: &Finding, out: &Path, look: &Console) {
         out.display(),
         finding.seconds
     ));
-}
-
-fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::work(format!("{}: cannot be written ({error})", path.display()))
 }

@@ -6,11 +6,16 @@ use super::args::Estimate as Args;
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
+use super::outputs;
 use lacuna::digits::number;
 use lacuna::estimate::{Estimated, estimate_with};
-use lacuna::file::save;
+use lacuna::file::save_with;
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
+    outputs::distinct(&args.data, &[])?;
+    let mut inputs = outputs::paths(&[&args.data]);
+    inputs.extend(args.model.as_deref());
+    outputs::check(&inputs, std::slice::from_ref(&args.out), look)?;
     let Some(model) = &args.model else { return super::linear::run(args, look) };
     let (system, want) = input::model(model)?;
     input::writable(&args.out)?;
@@ -18,7 +23,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     look.hear_interrupts()?;
     let estimate = estimate_with(&system, &records, &args.fix, seed, look)?;
     look.clear();
-    save(&estimate.system, &args.out)?;
+    save_with(&estimate.system, &args.out, &["Written by `lacuna estimate`.".into()])?;
     for parameter in &estimate.parameters {
         look.result(&line(parameter));
     }

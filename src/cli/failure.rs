@@ -51,6 +51,16 @@ impl Failure {
         Self { kind: Kind::Input, message, pretty, place, hint: Some(hint) }
     }
 
+    /// The work failed at a file or folder.
+    pub fn work_at(message: String, place: Place, hint: String) -> Self {
+        Self { kind: Kind::Work, ..Self::input(message, place, hint) }
+    }
+
+    /// Paths or options that do not go together.
+    pub fn call_refused(message: String, place: Place, hint: String) -> Self {
+        Self { kind: Kind::Call, ..Self::input(message, place, hint) }
+    }
+
     /// A typed error in other words: what to try differs by command.
     pub fn with_hint(error: &dyn Explain, hint: String) -> Self {
         let pretty = format!("{error}\n  try: {hint}");

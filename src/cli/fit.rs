@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
 
@@ -11,10 +11,11 @@ use super::args::Fit as Args;
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
+use super::outputs::{self, cannot_write};
 use lacuna::data::Record;
 use lacuna::digits::number;
 use lacuna::evaluate::{Init, Metrics, Simulation};
-use lacuna::file::{Document, save_with};
+use lacuna::file::{Document, save_with, write_text};
 use lacuna::lfr::AugmentedModel;
 use lacuna::report::{Shown, TrainingReport};
 use lacuna::system::System;
@@ -23,10 +24,25 @@ use lacuna::watch::Watch;
 
 /// Share of the data that is kept for validation where no record is given for it.
 const VALIDATION: f64 = 0.2;
+/// What a training writes beside its checkpoint.
+const FILES: [&str; 4] = ["model.toml", "weights.json", "history.csv", "report.html"];
 
 pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Result<u8, Failure> {
+    let test: Vec<PathBuf> = args.test.iter().cloned().collect();
+    let apart: [(&str, &[PathBuf]); 2] = [("--validate", &args.validate), ("--test", &test)];
+    outputs::distinct(&args.on.data, &apart)?;
     let document = Document::load(&args.config)?;
     let mut recipe: Recipe = document.read()?;
+    let checkpoint = recipe
+        .training
+        .checkpoint
+        .get_or_insert_with(|| Checkpoint { path: args.out.join("checkpoint.json"), every: 100 });
+    let mut inputs = outputs::paths(&[&args.on.data, &args.validate, &test]);
+    inputs.extend([args.on.model.as_path(), &args.config]);
+    let mut written = outputs::within(&args.out, &FILES);
+    written.push(checkpoint.path.clone());
+    outputs::check(&inputs, &written, look)?;
+    let known = checkpoint.path.exists();
     let (system, want) = input::model(&args.on.model)?;
     let columns = &args.on.columns;
     let read = |path: &PathBuf| input::record(path, &want, columns, look);
@@ -49,11 +65,6 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     }
     let available = || std::thread::available_parallelism().map_or(1, usize::from);
     recipe.training.threads = threads.unwrap_or_else(available);
-    let checkpoint = recipe
-        .training
-        .checkpoint
-        .get_or_insert_with(|| Checkpoint { path: args.out.join("checkpoint.json"), every: 100 });
-    let known = checkpoint.path.exists();
     look.hear_interrupts()?;
     let (start, started) = recipe.start(&system, &records, recipe.training.seed)?;
     // what cannot be saved is better known before the work than after it
@@ -133,8 +144,10 @@ impl Done<'_> {
         save_with(&model, &out.join("model.toml"), &header)?;
         let weights = serde_json::to_string_pretty(&fit.model)
             .map_err(|error| Failure::work(format!("the weights cannot be written: {error}")))?;
-        write(&out.join("weights.json"), &weights)?;
-        write(&out.join("history.csv"), &self.history())?;
+        for (name, text) in [("weights.json", weights), ("history.csv", self.history())] {
+            let path = out.join(name);
+            write_text(&path, &text).map_err(|error| cannot_write(&path, &error))?;
+        }
         let mut report =
             TrainingReport::of(fit, self.want, &self.recipe.training.validation.lengths)
                 .noting(started);
@@ -205,8 +218,7 @@ impl Done<'_> {
         if fit.rollbacks > 0 {
             look.result(&format!("{} steps led nowhere and were taken back.", fit.rollbacks));
         }
-        let files = ["model.toml", "weights.json", "history.csv", "report.html"];
-        look.say(&format!("Wrote {} into {}", files.join(", "), out.display()));
+        look.say(&format!("Wrote {} into {}", FILES.join(", "), out.display()));
         let last = fit.history.iter().find(|epoch| epoch.epoch == fit.epoch);
         let mut document = json!({
             "schema": 1,
@@ -257,12 +269,4 @@ impl Done<'_> {
         }
         text
     }
-}
-
-fn write(path: &Path, text: &str) -> Result<(), Failure> {
-    fs::write(path, text).map_err(|error| cannot_write(path, &error))
-}
-
-fn cannot_write(path: &Path, error: &std::io::Error) -> Failure {
-    Failure::work(format!("{}: cannot be written ({error})", path.display()))
 }

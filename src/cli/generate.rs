@@ -3,28 +3,38 @@
 use std::fs;
 use std::path::Path;
 
+use serde_json::{Map, Value, json};
+
 use super::args::Generate as Args;
 use super::console::Console;
 use super::failure::Failure;
+use super::outputs::{self, cannot_write};
 use lacuna::digits::number;
-use lacuna::file::{Document, load};
+use lacuna::file::{Document, load, write_text};
 use lacuna::study::Generate;
+
+/// What is written.
+const FILES: [&str; 3] = ["est.csv", "test.csv", "truth.json"];
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     let how: Generate = Document::load(&args.config)?.read()?;
     let beside = args.config.parent().unwrap_or(Path::new("")).join(&how.model);
+    outputs::check(&[&args.config, &beside], &outputs::within(&args.out, &FILES), look)?;
     let system = load(&beside)?;
     let made = how.make(&system, seed)?;
-    let cannot = |path: &Path, error: &std::io::Error| {
-        Failure::work(format!("{}: cannot be written ({error})", path.display()))
-    };
-    fs::create_dir_all(&args.out).map_err(|error| cannot(&args.out, &error))?;
-    made.est.write_csv(args.out.join("est.csv"))?;
-    made.test.write_csv(args.out.join("test.csv"))?;
-    let document = serde_json::to_value(&made.truth)
+    fs::create_dir_all(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
+    let mut sums = Map::new();
+    for (name, record) in [("est.csv", &made.est), ("test.csv", &made.test)] {
+        let path = args.out.join(name);
+        record.write_csv(&path)?;
+        sums.insert(name.into(), json!(outputs::checksum(&path)));
+    }
+    let mut document = serde_json::to_value(&made.truth)
         .map_err(|error| Failure::work(format!("the truth cannot be written: {error}")))?;
     let path = args.out.join("truth.json");
-    fs::write(&path, format!("{document:#}\n")).map_err(|error| cannot(&path, &error))?;
+    // so that another call knows these records as its own, and replaces no measured one
+    document["crc32"] = Value::Object(sums);
+    write_text(&path, &format!("{document:#}\n")).map_err(|error| cannot_write(&path, &error))?;
     for (record, outputs) in &made.truth.records {
         for (name, truth) in outputs {
             look.result(&format!(

@@ -89,6 +89,11 @@ pub fn records(
     Ok(records)
 }
 
+/// Name of the k-th repaired record, from 0.
+pub fn repaired(k: usize) -> String {
+    if k == 0 { "repaired.csv".into() } else { format!("repaired-{}.csv", k + 1) }
+}
+
 /// Writes repaired records into a folder: repaired.csv, repaired-2.csv..
 pub fn keep_repaired(
     records: &[Record],
@@ -100,7 +105,7 @@ pub fn keep_repaired(
         return Ok(());
     }
     for (k, record) in records.iter().enumerate() {
-        let name = if k == 0 { "repaired.csv".into() } else { format!("repaired-{}.csv", k + 1) };
+        let name = repaired(k);
         record.write_csv(folder.join(&name))?;
         look.say(&format!("Wrote {name} into {}", folder.display()));
     }

@@ -19,6 +19,7 @@ mod linear;
 mod list;
 mod missing;
 mod no_model;
+mod outputs;
 mod plan;
 mod provenance;
 mod simulate;

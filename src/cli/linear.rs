@@ -9,7 +9,7 @@ use super::input;
 use super::no_model::Asked;
 use lacuna::digits::number;
 use lacuna::estimate::{LinearEstimate, LinearParameter, Mode, linear_with};
-use lacuna::file::save;
+use lacuna::file::save_with;
 
 pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     input::writable(&args.out)?;
@@ -19,7 +19,7 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     look.hear_interrupts()?;
     let found = linear_with(&records, order, look)?;
     look.clear();
-    save(&found.system, &args.out)?;
+    save_with(&found.system, &args.out, &["Written by `lacuna estimate --lti`.".into()])?;
     tell(&found, look);
     look.say(&format!("Wrote {}", args.out.display()));
     let (before, after) = found.nrmse;

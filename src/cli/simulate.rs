@@ -8,6 +8,7 @@ use super::args::Simulate;
 use super::console::{Console, print};
 use super::failure::Failure;
 use super::input;
+use super::outputs;
 use lacuna::data::Record;
 use lacuna::digits::number;
 use lacuna::evaluate::{Metrics, Simulation};
@@ -21,6 +22,8 @@ pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
             "write the record into a file: --out simulated.csv".into(),
         ));
     }
+    let out: Vec<_> = args.out.iter().filter(|out| out.as_os_str() != "-").cloned().collect();
+    outputs::check(&[&args.model, &args.data], &out, look)?;
     let (system, want) = input::model(&args.model)?;
     let record = input::record_to_simulate(&args.data, &want, &args.columns, look)?;
     let run = Simulation::of(&system, &record, input::init(args.init))?;

@@ -6,6 +6,7 @@ use super::args::{Columns, Study as Args, StudyVerb};
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
+use super::outputs;
 use lacuna::data::Record;
 use lacuna::digits::number;
 use lacuna::file::Document;
@@ -13,8 +14,12 @@ use lacuna::study::{ExamResult, Inputs, MonteCarlo, StudyResult};
 
 mod exam;
 
+/// What a study or an exam writes into its folder.
+const FILES: [&str; 5] = ["study.json", "runs.csv", "courses.csv", "cases.csv", "report.html"];
+
 pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Result<u8, Failure> {
     if let Some(StudyVerb::Merge(merge)) = &args.verb {
+        outputs::check(&[], &outputs::within(&merge.out, &FILES), look)?;
         if merge.folders.iter().any(|folder| ExamResult::lies_in(folder)) {
             return exam::finish(&ExamResult::merge(&merge.folders)?, &merge.out, look);
         }
@@ -25,6 +30,7 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
         return Err(Failure::work("a study needs --config, or `merge` and folders".into()));
     };
     let document = Document::load(config)?;
+    outputs::check(&[config], &outputs::within(&args.out, &FILES), look)?;
     if document.has("systems") {
         return exam::run(&document, config, args, seed, threads, look);
     }
@@ -33,7 +39,15 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let (i, n) = args.shard.unwrap_or((1, 1));
     let jobs = study.share(i, n)?;
     let beside = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
-    let (system, want) = input::model(&beside(&study.model))?;
+    let test: Vec<_> = study.test.iter().map(beside).collect();
+    let [data, validate] =
+        [&study.data, &study.validate].map(|names| names.iter().map(beside).collect::<Vec<_>>());
+    outputs::distinct(&data, &[("test", &test)])?;
+    let mut inputs = outputs::paths(&[&data, &validate, &test]);
+    let model = beside(&study.model);
+    inputs.push(&model);
+    outputs::check(&inputs, &outputs::within(&args.out, &FILES), look)?;
+    let (system, want) = input::model(&model)?;
     let read = |name: &String| input::record(&beside(name), &want, &Columns::default(), look);
     let all = |names: &[String]| names.iter().map(read).collect::<Result<Vec<Record>, _>>();
     let inputs = Inputs {

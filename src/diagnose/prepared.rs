@@ -35,7 +35,7 @@ pub(crate) fn windows(records: &[Record]) -> Option<Vec<Record>> {
         let length = (MOST as f64 * n as f64 / total as f64) as usize / WINDOWS;
         for w in 0..WINDOWS {
             let start = w * (n - length) / (WINDOWS - 1);
-            windows.push(record.part(start..start + length));
+            windows.push(record.slice(start..start + length));
         }
     }
     Some(windows)

@@ -171,7 +171,7 @@ impl<'a> Problem<'a> {
         let fit_drive = Drive {
             inputs: drive.inputs.iter().map(|u| u[..end.min(u.len())].to_vec()).collect(),
             segments: fit_segments.clone(),
-            origins: drive.origins.clone(),
+            clocks: drive.clocks.clone(),
         };
         let counted = |s: &Range<usize>| (s.start + SKIP.min(s.len() / 10))..s.end;
         let fit = fit_segments.iter().map(counted).filter(|s| !s.is_empty()).collect();

@@ -55,7 +55,7 @@ pub(crate) fn join(signals: &Signals, records: &[Record]) -> Result<Joined, Diag
         drive: Drive {
             inputs: vec![vec![]; signals.inputs.len()],
             segments: vec![],
-            origins: vec![],
+            clocks: vec![],
         },
         measured: vec![vec![]; signals.outputs.len()],
         names: vec![],
@@ -91,7 +91,9 @@ pub(crate) fn join(signals: &Signals, records: &[Record]) -> Result<Joined, Diag
         }
         for segment in &own.segments {
             joined.drive.segments.push(segment.start + offset..segment.end + offset);
-            joined.drive.origins.push(offset as i64 - record.before as i64);
+            // each record goes by its own clock
+            let first = record.start - offset as f64 * record.sampling_time;
+            joined.drive.clocks.push(first);
         }
         joined.names.push(name_of(record, joined.spans.len()));
         joined.spans.push(offset..offset + record.len());

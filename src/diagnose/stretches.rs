@@ -40,7 +40,7 @@ fn cut(records: &[Record], length: usize, most: usize) -> (Vec<(usize, usize)>, 
         .collect();
     let every = all.len().div_ceil(most.max(1)).max(1);
     let kept = all.into_iter().step_by(every);
-    kept.map(|(r, from)| ((r, from), records[r].part(from..from + length))).unzip()
+    kept.map(|(r, from)| ((r, from), records[r].slice(from..from + length))).unzip()
 }
 
 impl Diagnosis<'_> {
@@ -56,7 +56,7 @@ impl Diagnosis<'_> {
             Some(record) => (records.to_vec(), vec![record.clone()]),
             None => records
                 .iter()
-                .map(|r| (r.part(0..kept_from(r)), r.part(kept_from(r)..r.len())))
+                .map(|r| (r.slice(0..kept_from(r)), r.slice(kept_from(r)..r.len())))
                 .unzip(),
         };
         let (mut faults, firsts) = (vec![], firsts(records));

@@ -67,7 +67,7 @@ impl Predictor {
         let system = system.clone();
         let nothing = LikelihoodError::Nothing { records: records.len() };
         let Some(first) = records.first() else { return Err(nothing) };
-        let mut drive = Drive { inputs: vec![], segments: vec![], origins: vec![] };
+        let mut drive = Drive { inputs: vec![], segments: vec![], clocks: vec![] };
         let (mut measured, mut before, mut plan) = (vec![], 0, None);
         for record in records {
             let (found, step) = (record.sampling_time, first.sampling_time);
@@ -82,7 +82,9 @@ impl Predictor {
             }
             let moved = |s: &std::ops::Range<usize>| s.start + before..s.end + before;
             drive.segments.extend(run.drive.segments.iter().map(moved));
-            drive.origins.extend(run.drive.origins.iter().map(|origin| origin + before as i64));
+            // each record goes by its own clock
+            let behind = before as f64 * record.sampling_time;
+            drive.clocks.extend(run.drive.clocks.iter().map(|clock| clock - behind));
             for k in 0..record.len() {
                 let value = |y: &Option<Vec<f64>>| y.as_ref().map_or(f64::NAN, |y| y[k]);
                 measured.extend(run.measured.iter().map(value));

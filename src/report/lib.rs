@@ -1,6 +1,6 @@
 //! Turns results into one HTML file that needs nothing else.
 
-use lacuna_core::{data, digits, effect, evaluate};
+use lacuna_core::{data, digits, effect, evaluate, file};
 use lacuna_diagnose as diagnose;
 use lacuna_learn::train;
 use lacuna_likelihood as likelihood;
@@ -70,7 +70,7 @@ impl<'a> Report<'a> {
     ///
     /// If the file cannot be written.
     pub fn write(&self, path: &Path) -> std::io::Result<()> {
-        std::fs::write(path, self.html())
+        crate::file::write_text(path, &self.html())
     }
 
     /// What the model lacks at a cause's place, against the coordinate, as an SVG file's text;

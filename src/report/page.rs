@@ -58,6 +58,7 @@ impl Page {
         format!(
             "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta name=\"generator\" content=\"lacuna\">\n\
              <title>{}</title>\n<style>\n{}</style></head>\n<body><main>\n{}</main></body></html>\n",
             escape(title),
             include_str!("style.css"),

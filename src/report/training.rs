@@ -63,7 +63,7 @@ impl<'a> TrainingReport<'a> {
     ///
     /// If the file cannot be written.
     pub fn write(&self, path: &Path) -> std::io::Result<()> {
-        std::fs::write(path, self.html())
+        crate::file::write_text(path, &self.html())
     }
 
     /// The page.

@@ -4,7 +4,7 @@ use crate::data::DataError;
 use crate::diagnose::DiagnoseError;
 use crate::evaluate::EvaluateError;
 use crate::fault::{Explain, Kind};
-use crate::file::FileError;
+use crate::file::{FileError, write_hint};
 use crate::system::SystemError;
 use crate::train::TrainError;
 
@@ -57,6 +57,14 @@ pub enum StudyError {
         /// What is hidden in it, at the size that was asked for.
         hidden: String,
     },
+    /// A file or folder cannot be written.
+    #[error("{path}: cannot be written ({source})")]
+    Write {
+        /// File or folder.
+        path: String,
+        /// What the system says.
+        source: std::io::Error,
+    },
     /// Results of different studies, or none.
     #[error("{path}: {reason}")]
     Merge {
@@ -70,6 +78,10 @@ pub enum StudyError {
 impl StudyError {
     pub(super) fn merge(path: &std::path::Path, reason: impl ToString) -> Self {
         Self::Merge { path: path.display().to_string(), reason: reason.to_string() }
+    }
+
+    pub(super) fn write(path: &std::path::Path, source: std::io::Error) -> Self {
+        Self::Write { path: path.display().to_string(), source }
     }
 
     pub(super) fn setting(name: &str, found: impl ToString, expected: &str) -> Self {
@@ -86,7 +98,7 @@ impl Explain for StudyError {
             Self::System(error) => error.kind(),
             Self::File(error) => error.kind(),
             Self::Train(error) => error.kind(),
-            Self::Diverges { .. } => Kind::Work,
+            Self::Diverges { .. } | Self::Write { .. } => Kind::Work,
             Self::Setting { .. } | Self::Unresolved { .. } | Self::Merge { .. } => Kind::Input,
         }
     }
@@ -105,6 +117,7 @@ impl Explain for StudyError {
             Self::Unresolved { .. } => {
                 Some("let it act on more of the record, or take more substeps".into())
             }
+            Self::Write { source, .. } => Some(write_hint(source).into()),
             Self::Setting { .. } => Some("change it in the configuration".into()),
             Self::Merge { .. } => {
                 Some("merge folders that one configuration and one seed have made".into())

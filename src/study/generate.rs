@@ -185,6 +185,8 @@ impl Generate {
             u.iter_mut().for_each(|u| *u += offset);
             driven = driven.input(&header(&input.name, &input.unit), u)?;
         }
+        // the record begins after the transient, and there its time is 0
+        driven.start = -(self.transient as f64) * sampling_time;
         let mut truth = system.clone();
         truth.effects.extend(self.hidden.iter().cloned());
         let run = |system: &System| -> Result<Simulation, StudyError> {

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::StudyError;
 use super::monte_carlo::{Inputs, MonteCarlo};
 use crate::encoder::StateError;
+use crate::file::write_text;
 use crate::train::{Augmented, Checkpoint, Ended, Epoch, Fit, Follow, Recipe, TrainError};
 
 /// One start with one seed.
@@ -175,12 +176,10 @@ impl Done {
     }
 }
 
-/// Writes a value as JSON: beside its place, then into it.
+/// Writes a value as JSON, as a whole or not at all.
 pub(crate) fn write(path: &Path, value: &impl Serialize) -> Result<(), StudyError> {
     let attempt = || -> std::io::Result<()> {
-        let fresh = path.with_extension("json.part");
-        std::fs::write(&fresh, serde_json::to_string_pretty(value)? + "\n")?;
-        std::fs::rename(&fresh, path)
+        write_text(path, &(serde_json::to_string_pretty(value)? + "\n"))
     };
-    attempt().map_err(|error| StudyError::merge(path, error))
+    attempt().map_err(|error| StudyError::write(path, error))
 }

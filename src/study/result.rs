@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::job::{Done, Frame};
 use super::{Job, Level, StudyError};
+use crate::file::write_text;
 
 /// All results of a study, in the order of its jobs.
 #[derive(Debug, Clone, PartialEq)]
@@ -191,9 +192,9 @@ impl StudyResult {
     pub fn write(&self, folder: &Path) -> Result<(), StudyError> {
         let put = |name: &str, text: String| {
             let path = folder.join(name);
-            std::fs::write(&path, text).map_err(|error| StudyError::merge(&path, error))
+            write_text(&path, &text).map_err(|error| StudyError::write(&path, error))
         };
-        std::fs::create_dir_all(folder).map_err(|error| StudyError::merge(folder, error))?;
+        std::fs::create_dir_all(folder).map_err(|error| StudyError::write(folder, error))?;
         let (mut runs, mut courses) = (String::from("start,seed,best_epoch"), String::new());
         for (name, unit) in &self.frame.outputs {
             let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };

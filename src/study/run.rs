@@ -33,7 +33,7 @@ impl MonteCarlo {
         watch: &dyn Watch,
     ) -> Result<usize, StudyError> {
         let folder = folder.join("runs");
-        std::fs::create_dir_all(&folder).map_err(|error| StudyError::merge(&folder, error))?;
+        std::fs::create_dir_all(&folder).map_err(|error| StudyError::write(&folder, error))?;
         let signals = inputs.system.signals();
         let frame = Frame {
             fingerprint: self.fingerprint(inputs, seed)?,

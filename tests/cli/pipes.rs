@@ -81,8 +81,7 @@ fn results_that_cannot_be_written() {
     for line in [
         "simulate --model m.toml --data d.csv --out no/such/folder/s.csv",
         "estimate --model m.toml --data d.csv --out no/such/folder/f.toml",
-        "diagnose --model m.toml --data d.csv --out m.toml",
-        "diagnose --model m.toml --data d.csv --out m.toml/inside",
+        "diagnose --model m.toml --data d.csv --out drive.csv/inside",
         "demo --out d.csv",
     ] {
         let ran = run(&folder, &format!("{line} --json")).exits(1);

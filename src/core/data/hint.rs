@@ -60,7 +60,7 @@ impl Explain for DataError {
             }
             Self::Open { .. } => "check that the path is a file that you may read".into(),
             Self::Unpack { .. } => "pack the file again, or hand it in unpacked".into(),
-            Self::Write { .. } => "check that the folder exists and may be written".into(),
+            Self::Write { source, .. } => crate::file::write_hint(source).into(),
             Self::Empty { .. } => "the first line names the columns, such as `time,u [N],y [m]`".into(),
             Self::NoRows { .. } => "add one line of numbers for each sample".into(),
             Self::NotText { .. } => {

@@ -82,9 +82,6 @@ pub struct Record {
     pub outputs: Vec<Signal>,
     /// The stretches of samples with every input present.
     pub segments: Vec<Range<usize>>,
-    /// Samples of the record that it is a part of that lie before it: what changes with time
-    /// goes on.
-    pub before: usize,
 }
 
 impl Record {
@@ -100,7 +97,6 @@ impl Record {
             inputs: Vec::new(),
             outputs: Vec::new(),
             segments: Vec::new(),
-            before: 0,
         }
     }
 

@@ -36,14 +36,7 @@ impl Record {
                 .filter(|s| s.start < s.end)
                 .map(|s| s.start - start..s.end - start)
                 .collect(),
-            before: 0,
         }
-    }
-
-    /// The same as a part of the record it comes from, for which time does not begin anew.
-    pub fn part(&self, range: Range<usize>) -> Self {
-        let before = self.before + range.start.min(self.len());
-        Self { before, ..self.slice(range) }
     }
 
     /// Parts of the record in the order of time, one for each fraction. With a sum below

@@ -4,16 +4,17 @@ use super::clock::digits;
 use super::error::DataError;
 use super::record::{Record, Signal};
 use crate::fault::Place;
+use crate::file::write_whole;
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 impl Record {
     /// Writes the columns `time [s]`, inputs, outputs; packed by gzip where the path
     /// ends in `.gz`. Values have the shortest digits that read as the same number, a
-    /// missing value is an empty cell.
+    /// missing value is an empty cell. The file is there as a whole or, if anything fails, as
+    /// it was before.
     ///
     /// # Errors
     ///
@@ -22,16 +23,14 @@ impl Record {
     pub fn write_csv(&self, path: impl AsRef<Path>) -> Result<(), DataError> {
         let path = path.as_ref();
         self.writable()?;
-        let written = File::create(path).and_then(|file| {
-            let file = BufWriter::new(file);
+        let written = write_whole(path, |to| {
             if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("gz")) {
-                let mut packed = GzEncoder::new(file, Compression::default());
+                let mut packed = GzEncoder::new(to, Compression::default());
                 self.lines_to(&mut packed)?;
-                packed.finish()?.flush()
+                packed.finish()?;
+                Ok(())
             } else {
-                let mut file = file;
-                self.lines_to(&mut file)?;
-                file.flush()
+                self.lines_to(to)
             }
         });
         written.map_err(|source| {
@@ -86,7 +85,7 @@ impl Record {
         Ok(())
     }
 
-    fn lines_to(&self, to: &mut impl Write) -> io::Result<()> {
+    fn lines_to(&self, to: &mut (impl Write + ?Sized)) -> io::Result<()> {
         write!(to, "time [s]")?;
         for signal in self.signals() {
             write!(to, ",{}", in_quotes(&header(signal)))?;

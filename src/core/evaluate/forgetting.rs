@@ -21,11 +21,11 @@ const ASKED: usize = 8;
 impl Run<'_> {
     /// Largest change of any state, in units of its size, that a small change of the start has
     /// made up to each sample of a stretch, in units of that change.
-    fn growth(&self, range: std::ops::Range<usize>, origin: i64, start: &[f64]) -> Vec<f64> {
+    fn growth(&self, range: std::ops::Range<usize>, clock: f64, start: &[f64]) -> Vec<f64> {
         let drive = Drive {
             inputs: self.drive.inputs.iter().map(|u| u[..range.end].to_vec()).collect(),
             segments: std::iter::once(range.clone()).collect(),
-            origins: vec![origin],
+            clocks: vec![clock],
         };
         let scales = self.state_scales(&drive, start);
         let states = |x: &[f64]| {
@@ -59,11 +59,11 @@ impl Run<'_> {
 
     /// The initial state of a stretch, fitted to more and more of it: all at once, the cost has
     /// many minima where runs part.
-    fn patient_start(&self, stretch: std::ops::Range<usize>, origin: i64) -> Vec<f64> {
+    fn patient_start(&self, stretch: std::ops::Range<usize>, clock: f64) -> Vec<f64> {
         let mut start = self.plan.signals.initial();
         let mut count = SHORTEST;
         loop {
-            start = self.start_from(stretch.clone(), origin, count, start);
+            start = self.start_from(stretch.clone(), clock, count, start);
             if count >= stretch.len() {
                 return start;
             }
@@ -73,15 +73,15 @@ impl Run<'_> {
 
     /// Initial states of all segments, each fitted to all of it.
     pub fn starts_of_stretches(&self) -> Vec<Vec<f64>> {
-        let segments = self.drive.segments.iter().zip(&self.drive.origins);
-        segments.map(|(segment, &origin)| self.patient_start(segment.clone(), origin)).collect()
+        let segments = self.drive.segments.iter().zip(&self.drive.clocks);
+        segments.map(|(segment, &clock)| self.patient_start(segment.clone(), clock)).collect()
     }
 
     /// Growth along stretches of a length, each from a start fitted to it so that it stays near
     /// the data, and followed for `reach` samples.
     fn grown(
         &self,
-        (segment, origin): (&std::ops::Range<usize>, i64),
+        (segment, clock): (&std::ops::Range<usize>, f64),
         length: usize,
         reach: usize,
     ) -> Vec<Vec<f64>> {
@@ -89,8 +89,8 @@ impl Run<'_> {
         (segment.start..=segment.end - reach)
             .step_by(step)
             .map(|from| {
-                let own = self.patient_start(from..from + length, origin);
-                self.growth(from..from + reach, origin, &own)
+                let own = self.patient_start(from..from + length, clock);
+                self.growth(from..from + reach, clock, &own)
             })
             .collect()
     }
@@ -101,9 +101,9 @@ impl Run<'_> {
     /// What grows like a power of time, as an integrator's offset does, hardly grows in units of
     /// how far the states move meanwhile; an unstable or chaotic system's error multiplies.
     pub fn horizon(&self) -> Option<usize> {
-        let segments = self.drive.segments.iter().zip(&self.drive.origins);
-        let (segment, origin) = segments.max_by_key(|(s, _)| s.len())?;
-        let (segment, origin) = (segment.clone(), *origin);
+        let segments = self.drive.segments.iter().zip(&self.drive.clocks);
+        let (segment, clock) = segments.max_by_key(|(s, _)| s.len())?;
+        let (segment, clock) = (segment.clone(), *clock);
         let shortest = SHORTEST.max(5 * self.plan.sizes.x);
         let longest = segment.len() / 4;
         let quantile = |mut sorted: Vec<f64>, at: f64| {
@@ -123,8 +123,8 @@ impl Run<'_> {
             let follow = |(&from, start): (&usize, &mut Vec<f64>)| {
                 let stretch = from..from + length;
                 let guess = std::mem::take(start);
-                *start = self.start_from(stretch.clone(), origin, length, guess);
-                self.growth(stretch, origin, start).last().copied()
+                *start = self.start_from(stretch.clone(), clock, length, guess);
+                self.growth(stretch, clock, start).last().copied()
             };
             let ends: Vec<Option<f64>> = places.par_iter().zip(&mut starts).map(follow).collect();
             let grown = quantile(ends.into_iter().flatten().collect(), 0.5)?;
@@ -140,7 +140,7 @@ impl Run<'_> {
         }
         for _ in 0..2 {
             let reach = (2 * length).min(segment.len());
-            let within = self.grown((&segment, origin), length, reach).into_iter().map(|grown| {
+            let within = self.grown((&segment, clock), length, reach).into_iter().map(|grown| {
                 grown.iter().position(|g| *g > BEARABLE).unwrap_or(grown.len()) as f64
             });
             // three stretches of four bear that length
@@ -152,15 +152,15 @@ impl Run<'_> {
     /// Cuts the record into stretches of a length, each with a start of its own; `most` of them,
     /// spread over it, are kept.
     pub fn cut(&mut self, length: usize, most: usize) {
-        let whole = self.drive.segments.iter().zip(&self.drive.origins);
-        let all: Vec<(std::ops::Range<usize>, i64)> = whole
-            .flat_map(|(segment, &origin)| {
+        let whole = self.drive.segments.iter().zip(&self.drive.clocks);
+        let all: Vec<(std::ops::Range<usize>, f64)> = whole
+            .flat_map(|(segment, &clock)| {
                 let starts = segment.clone().step_by(length.max(1));
-                starts.map(move |from| (from..(from + length).min(segment.end), origin))
+                starts.map(move |from| (from..(from + length).min(segment.end), clock))
             })
             .collect();
         let every = all.len().div_ceil(most.max(1)).max(1);
-        (self.drive.segments, self.drive.origins) = all.into_iter().step_by(every).unzip();
+        (self.drive.segments, self.drive.clocks) = all.into_iter().step_by(every).unzip();
     }
 
     /// Name and series of every output, simulated in stretches of a length, each from a start of

@@ -29,11 +29,10 @@ pub fn drive(signals: &Signals, record: &Record) -> Result<Drive, EvaluateError>
         })?;
         inputs.push(found.values.clone());
     }
-    let origin = -(record.before as i64);
     Ok(Drive {
         inputs,
         segments: record.segments.clone(),
-        origins: vec![origin; record.segments.len()],
+        clocks: vec![record.start; record.segments.len()],
     })
 }
 
@@ -136,7 +135,7 @@ impl<'a> Run<'a> {
         let drive = Drive {
             inputs: self.drive.inputs.iter().map(|u| u[..end].to_vec()).collect(),
             segments: std::iter::once(first.start..end).collect(),
-            origins: self.drive.origins[..1].to_vec(),
+            clocks: self.drive.clocks[..1].to_vec(),
         };
         let mut lanes = vec![self.lane(vec![initial.clone()])];
         for i in 0..n {
@@ -169,20 +168,20 @@ impl<'a> Run<'a> {
         }
         segments
             .iter()
-            .zip(&self.drive.origins)
-            .map(|(segment, &origin)| self.start_of(segment.clone(), origin, count))
+            .zip(&self.drive.clocks)
+            .map(|(segment, &clock)| self.start_of(segment.clone(), clock, count))
             .collect()
     }
 
-    fn start_of(&self, segment: std::ops::Range<usize>, origin: i64, count: usize) -> Vec<f64> {
-        self.start_from(segment, origin, count, self.plan.signals.initial())
+    fn start_of(&self, segment: std::ops::Range<usize>, clock: f64, count: usize) -> Vec<f64> {
+        self.start_from(segment, clock, count, self.plan.signals.initial())
     }
 
     /// The initial state of a segment, fitted to its first `count` samples from a guess.
     pub(super) fn start_from(
         &self,
         segment: std::ops::Range<usize>,
-        origin: i64,
+        clock: f64,
         count: usize,
         guess: Vec<f64>,
     ) -> Vec<f64> {
@@ -191,7 +190,7 @@ impl<'a> Run<'a> {
         let drive = Drive {
             inputs: self.drive.inputs.iter().map(|u| u[..end].to_vec()).collect(),
             segments: std::iter::once(segment.start..end).collect(),
-            origins: vec![origin],
+            clocks: vec![clock],
         };
         let scales: Vec<f64> = self.state_scales(&drive, &initial);
         let unknowns = initial

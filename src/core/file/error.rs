@@ -4,6 +4,7 @@ use std::io;
 
 use super::complaint::Complaint;
 use super::source::Spot;
+use super::whole::write_hint;
 use crate::effect::{DefinitionError, DefinitionProblem};
 use crate::fault::{Explain, Kind, Place, nearest};
 use crate::model::Fault;
@@ -205,7 +206,7 @@ impl Explain for FileError {
                 io::ErrorKind::NotFound => "check the path",
                 _ => return None,
             },
-            Self::Write { .. } => "choose a folder that exists and that you may write to",
+            Self::Write { source, .. } => write_hint(source),
             Self::NotUtf8 { .. } => "save the file as UTF-8",
             Self::Syntax { .. } => "see https://toml.io, or https://json.org for a .json file",
             Self::Value { complaint, .. } => return complaint_hint(complaint),

@@ -21,6 +21,7 @@ mod node;
 mod read;
 mod source;
 mod toml;
+mod whole;
 mod write;
 mod written;
 
@@ -32,6 +33,7 @@ pub use complaint::Complaint;
 pub use document::{Document, Format};
 pub use error::FileError;
 pub use source::Spot;
+pub use whole::{write_hint, write_text, write_whole};
 pub use write::{save, save_with, to_json, to_toml, to_toml_with};
 
 /// Reads a model file, as TOML or JSON by its ending, else by its text, and checks that

@@ -1,7 +1,5 @@
 //! Systems as text that a person enjoys, and that reads as the same system.
 
-use std::fs;
-use std::io::{self, Write as _};
 use std::path::Path;
 
 use serde::Serialize;
@@ -12,6 +10,7 @@ use super::document::Format;
 use super::error::FileError;
 use super::lines;
 use super::source::Spot;
+use super::whole::write_text;
 use crate::system::{Hold, Integrator, System};
 
 /// A system as a TOML model file. Defaults are left out; numbers have the shortest digits
@@ -100,30 +99,10 @@ pub fn save_with(system: &System, path: &Path, header: &[String]) -> Result<(), 
         beside.iter().map(|(path, text)| (path.as_path(), text)).chain([(path, &text)])
     {
         let name = path.display().to_string();
-        replace(path, text)
+        write_text(path, text)
             .map_err(|source| FileError::Write { at: Box::new(Spot::file(&name)), source })?;
     }
     Ok(())
-}
-
-/// Writes a text beside a file and gives it the file's name.
-fn replace(path: &Path, text: &str) -> io::Result<()> {
-    let Some(name) = path.file_name() else {
-        return Err(io::Error::new(io::ErrorKind::InvalidInput, "the path names no file"));
-    };
-    let mut beside = name.to_os_string();
-    beside.push(format!(".{}.part", std::process::id()));
-    let beside = path.with_file_name(beside);
-    let written = fs::File::create(&beside).and_then(|mut file| {
-        file.write_all(text.as_bytes())?;
-        file.sync_all()
-    });
-    let renamed = written.and_then(|()| fs::rename(&beside, path));
-    if renamed.is_err() {
-        // what failed is told; that nothing is left beside is all that can be done
-        let _ = fs::remove_file(&beside);
-    }
-    renamed
 }
 
 fn unwritable(error: &dyn std::error::Error) -> FileError {

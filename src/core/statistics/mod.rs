@@ -3,9 +3,11 @@
 mod averaged;
 mod basis;
 mod blocks;
+mod gross;
 mod lines;
 mod plans;
 mod sandwich;
+mod score_test;
 mod spectrum;
 
 pub use averaged::Averaged;
@@ -14,6 +16,8 @@ pub use blocks::{
     autocorrelation, block_sums, blocks, corrected_score, deviation, dot, mean, median, mixture,
     normal_tail, odds, rms, spread, wald, weight, whiteness,
 };
+pub use gross::gross;
 pub use lines::lines;
 pub use sandwich::covariance;
+pub use score_test::{Dependence, Regression};
 pub use spectrum::{pieces, power, strongest};

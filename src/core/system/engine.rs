@@ -42,7 +42,7 @@ pub fn simulate<R: EffectNumber>(
         groups.iter().map(|(_, lanes)| lanes.iter().map(track).collect()).collect();
     for (number, segment) in drive.segments.iter().enumerate() {
         run.start(groups, number);
-        run.origin = drive.origins.get(number).copied().unwrap_or(0);
+        run.clock = drive.clocks.get(number).copied().unwrap_or(0.0);
         for k in segment.clone() {
             run.sample(drive, k, segment.end, &mut tracks);
             if tracks.iter().flatten().all(|track| track.diverged_at.is_some()) {
@@ -99,8 +99,8 @@ struct Run<'a, R> {
     /// Whether parameters carry slopes that the exact step has to be told of.
     sloped: bool,
     first: bool,
-    /// Sample at which time is 0.
-    origin: i64,
+    /// Time of sample 0.
+    clock: f64,
     time: f64,
 }
 
@@ -150,7 +150,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             y: zeros(n.y),
             sums: zeros(1),
             first: true,
-            origin: 0,
+            clock: 0.0,
             time: 0.0,
         })
     }
@@ -184,7 +184,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
     /// Everything that is known at the start of step `j` of a sample: time, inputs, outputs.
     fn begin(&mut self, drive: &Drive, k: usize, end: usize, j: usize) {
         let (base, h) = (self.base, self.base.step());
-        self.time = (k as i64 - self.origin).max(0) as f64 * base.sampling_time + j as f64 * h;
+        self.time = self.clock + (k as f64 * base.sampling_time + j as f64 * h);
         self.drift(self.time);
         self.drive(drive, k, end, j);
         for group in &mut self.groups {

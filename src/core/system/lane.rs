@@ -11,8 +11,9 @@ pub struct Drive {
     pub inputs: Vec<Vec<f64>>,
     /// Runs of samples that are simulated without a break.
     pub segments: Vec<Range<usize>>,
-    /// Sample at which time is 0, for each segment; negative where time was 0 before the first.
-    pub origins: Vec<i64>,
+    /// Time of sample 0 in s, by the clock of each segment: sample `k` is at that time and `k`
+    /// steps.
+    pub clocks: Vec<f64>,
 }
 
 impl Drive {

@@ -81,7 +81,7 @@ impl<'a> Baseline<'a> {
             .map(|(i, output)| find(&record.outputs, &output.name, i, signals.outputs.len()))
             .collect();
         let segments = record.segments.clone();
-        let drive = Drive { inputs, origins: vec![0; segments.len()], segments };
+        let drive = Drive { inputs, clocks: vec![0.0; segments.len()], segments };
         let simulated = OnceLock::new();
         Ok(Self { system, record, augmented: 0, plan, drive, measured, simulated })
     }
@@ -240,7 +240,7 @@ impl<'a> Baseline<'a> {
         let drive = Drive {
             inputs: self.drive.inputs.iter().map(|u| u[..stretch.end].to_vec()).collect(),
             segments: vec![stretch.clone()],
-            origins: vec![0],
+            clocks: vec![0.0],
         };
         let initial = self.plan.signals.initial();
         let mut lanes = vec![self.lane(vec![initial.clone()])];

@@ -200,7 +200,7 @@ impl<'a> Map<'a> {
         };
         let run = |u: &[f64], xs: Vec<Vec<f64>>| -> Vec<(DVector<f64>, DVector<f64>)> {
             let (inputs, one) = (u.iter().map(|&u| vec![u]).collect(), 0..1);
-            let drive = Drive { inputs, segments: vec![one], origins: vec![0] };
+            let drive = Drive { inputs, segments: vec![one], clocks: vec![0.0] };
             let lanes: Vec<Lane> = xs.into_iter().map(lane).collect();
             let tracks = self.system.run(self.plan, &drive, &lanes);
             let both = tracks.into_iter().map(|track| {

@@ -1,13 +1,13 @@
 //! What is needed to go on after the program has ended, by whatever cause.
 
-use std::fs::{self, File};
-use std::io::Write;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::TrainError;
 use super::fit::Epoch;
+use crate::file::write_text;
 use crate::optimise::AdamState;
 
 /// Where and how often progress is written down.
@@ -66,24 +66,16 @@ impl State {
         Ok(Some(state))
     }
 
-    /// Writes a checkpoint: to a new file beside it, to the disk, then into its place.
+    /// Writes a checkpoint, as a whole or not at all.
     pub fn write(&self, path: &Path) -> Result<(), TrainError> {
         let attempt = || -> std::io::Result<()> {
             if let Some(folder) = path.parent().filter(|folder| !folder.as_os_str().is_empty()) {
                 fs::create_dir_all(folder)?;
             }
-            let mut name = path.file_name().unwrap_or_default().to_os_string();
-            name.push(".new");
-            let fresh = path.with_file_name(name);
-            let mut file = File::create(&fresh)?;
-            file.write_all(serde_json::to_string(self)?.as_bytes())?;
-            file.sync_all()?;
-            fs::rename(&fresh, path)
+            write_text(path, &serde_json::to_string(self)?)
         };
-        attempt().map_err(|error| TrainError::File {
-            path: path.display().to_string(),
-            reason: error.to_string(),
-        })
+        let path_name = || path.display().to_string();
+        attempt().map_err(|source| TrainError::Write { path: path_name(), source })
     }
 }
 

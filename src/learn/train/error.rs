@@ -2,6 +2,7 @@
 
 use crate::encoder::EncoderError;
 use crate::fault::{Explain, Kind};
+use crate::file::write_hint;
 use crate::lfr::LfrError;
 use crate::optimise::OptimiseError;
 
@@ -77,13 +78,21 @@ pub enum TrainError {
         /// Signals along it.
         path: Vec<String>,
     },
-    /// A file cannot be read or written.
+    /// A file cannot be read.
     #[error("{path}: {reason}")]
     File {
         /// The file.
         path: String,
         /// What the system says.
         reason: String,
+    },
+    /// A file cannot be written.
+    #[error("{path}: cannot be written ({source})")]
+    Write {
+        /// The file.
+        path: String,
+        /// What the system says.
+        source: std::io::Error,
     },
     /// A checkpoint of another run.
     #[error("{path} is the checkpoint of another run: {what} differ")]
@@ -98,7 +107,7 @@ pub enum TrainError {
 impl Explain for TrainError {
     fn kind(&self) -> Kind {
         match self {
-            Self::NotFinite { .. } | Self::Loop { .. } => Kind::Work,
+            Self::NotFinite { .. } | Self::Loop { .. } | Self::Write { .. } => Kind::Work,
             Self::File { .. }
             | Self::OtherRun { .. }
             | Self::NoSignal { .. }
@@ -129,7 +138,8 @@ impl Explain for TrainError {
                 Self::Loop { .. } => {
                     "let the learned part see a state instead of a result of this sample"
                 }
-                Self::File { .. } => "check the path and who may write there",
+                Self::File { .. } => "check the path, or remove the file to begin anew",
+                Self::Write { source, .. } => write_hint(source),
                 Self::OtherRun { .. } => {
                     "move the file away or go back to the settings it was made with"
                 }

@@ -18,7 +18,7 @@ effect.hysteresis = { alpha = 2.0, beta = 1.0, gamma = 0.5 }"#;
 
 fn advanced(system: &System, theta: &[f64], x: &[f64], w: &[f64]) -> [Vec<f64>; 2] {
     let plan = system.plan(system.sampling.sampling_time.unwrap()).unwrap();
-    let drive = Drive { inputs: vec![vec![2.0; 2]], segments: vec![0..2], origins: vec![0] };
+    let drive = Drive { inputs: vec![vec![2.0; 2]], segments: vec![0..2], clocks: vec![0.0] };
     let knobs = plan.knob_values();
     let mut plant = Transition::new(system, &plan, &drive, (theta, &knobs), true).unwrap();
     plant.start(0);

@@ -99,7 +99,7 @@ pub fn simulate_by(
     let mut random = Random::new(seed);
     let ny = signals.outputs.len();
     // one sample at a time: the input of a sample is known only when its output has been measured
-    let mut drive = Drive { inputs: vec![vec![0.0; n]], segments: vec![0..n], origins: vec![0] };
+    let mut drive = Drive { inputs: vec![vec![0.0; n]], segments: vec![0..n], clocks: vec![0.0] };
     let nf = plan.sizes.w + plan.sizes.u;
     let get = |v: &[f64], i: usize| v.get(i).copied().unwrap_or(0.0);
     let (mut slow, mut wander) = (vec![0.0; nf], vec![0.0; ny]);
@@ -112,7 +112,7 @@ pub fn simulate_by(
         let one = Drive {
             inputs: vec![vec![drive.inputs[0][k]; 2]],
             segments: vec![0..2],
-            origins: vec![-(k as i64)],
+            clocks: vec![k as f64 * step],
         };
         let mut plant = Transition::new(system, &plan, &one, (&theta, &knobs), false).unwrap();
         plant.start(0);

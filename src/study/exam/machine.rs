@@ -131,8 +131,8 @@ impl Machine {
     /// What a system makes of an input; `None` if it diverges.
     fn outputs(&self, of: &System, driven: &Record) -> Result<Option<Vec<Vec<f64>>>, StudyError> {
         let mut run = Run::new(of, driven)?;
-        // the record begins after the transient, and so does what changes with its time
-        run.drive.origins.fill(self.transient as i64);
+        // the record begins after the transient, and there its time is 0
+        run.drive.clocks.fill(-(self.transient as f64) * driven.sampling_time);
         let track = run.track(run.starts(0));
         let cut = |y: Vec<f64>| y[self.transient..].to_vec();
         Ok(track.diverged_at.is_none().then(|| track.y.into_iter().map(cut).collect()))

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::{ExamResult, Kind, Tally};
 use crate::StudyError;
+use crate::file::write_text;
 use crate::job::write;
 use crate::report::{Figure, Page, Scale};
 
@@ -85,10 +86,10 @@ impl ExamResult {
     ///
     /// If a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), StudyError> {
-        std::fs::create_dir_all(folder).map_err(|error| StudyError::merge(folder, error))?;
+        std::fs::create_dir_all(folder).map_err(|error| StudyError::write(folder, error))?;
         let put = |name: &str, text: String| {
             let path = folder.join(name);
-            std::fs::write(&path, text).map_err(|error| StudyError::merge(&path, error))
+            write_text(&path, &text).map_err(|error| StudyError::write(&path, error))
         };
         put("cases.csv", self.csv())?;
         put("report.html", self.html())?;

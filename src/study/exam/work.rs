@@ -47,7 +47,7 @@ impl Exam {
             machine.check(system)?;
         }
         let folder = folder.join("marks");
-        std::fs::create_dir_all(&folder).map_err(|error| StudyError::merge(&folder, error))?;
+        std::fs::create_dir_all(&folder).map_err(|error| StudyError::write(&folder, error))?;
         let exam = (self.fingerprint(systems, seed)?, self.cases()?.len());
         let mut open = vec![];
         for case in cases {

@@ -131,7 +131,7 @@ impl<'a> Transition<'a> {
 
     /// Goes to the start of a segment.
     pub fn start(&mut self, segment: usize) {
-        self.run.origin = self.drive.origins.get(segment).copied().unwrap_or(0);
+        self.run.clock = self.drive.clocks.get(segment).copied().unwrap_or(0.0);
         self.end = self.drive.segments[segment].end;
         self.run.groups.iter_mut().for_each(super::Group::restart);
         self.run.first = true;
