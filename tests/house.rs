@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Files of one concept that needs more than 300 lines; 450 are the limit.
-const LONGER: [&str; 13] = [
+const LONGER: [&str; 12] = [
     "src/core/data/error.rs",
     "src/diagnose/finding.rs",
     "src/diagnose/problem.rs",
@@ -14,7 +14,6 @@ const LONGER: [&str; 13] = [
     "src/learn/lfr/program.rs",
     "src/learn/network/kernel.rs",
     "src/core/optimise/levenberg.rs",
-    "src/report/svg.rs",
     "src/core/system/engine.rs",
     "src/core/system/wiring.rs",
     "tests/encoder/initialisers.rs",

@@ -77,6 +77,8 @@ fn remarked(finding: &Finding, words: &str) -> bool {
 /// The sections of the report.
 fn headings(finding: &Finding) -> Vec<String> {
     let html = Report::of(finding).html();
-    let parts = html.split("<h2>").skip(1);
-    parts.map(|part| part[..part.find("</h2>").unwrap()].to_string()).collect()
+    let parts = html.split("<h2 ").skip(1);
+    let text =
+        |part: &str| part[part.find('>').unwrap() + 1..part.find("</h2>").unwrap()].to_string();
+    parts.map(text).collect()
 }

@@ -3,6 +3,8 @@
 mod columns;
 mod estimate;
 mod look;
+mod report;
+mod study;
 
 use std::path::PathBuf;
 
@@ -11,6 +13,8 @@ use clap::{Args as Arguments, Parser, Subcommand};
 pub use columns::Columns;
 pub use estimate::Estimate;
 pub use look::Look;
+pub use report::Report;
+pub use study::{Study, StudyVerb};
 
 /// Shows what a model's simulation gets wrong, names the cause, extends the model and
 /// measures the gain.
@@ -126,6 +130,11 @@ pub enum Command {
         lacuna study --config examples/exam/exam.toml --out exam"
     )]
     Study(Study),
+    /// Draws the page of a diagnosis again from what was stored beside it
+    #[command(after_help = "Example:\n  lacuna report lacuna-out\n\n\
+        Reads report-data.json, which `diagnose` writes, and writes report.html anew: after an update\n\
+        of the program, or where the page is lost. Takes the folder or a file in it.")]
+    Report(Report),
     /// Lists the registered models
     #[command(after_help = "Example:\n  lacuna models --json")]
     Models,
@@ -252,46 +261,6 @@ pub struct Generate {
     /// Folder for the records
     #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
     pub out: PathBuf,
-}
-
-#[derive(Debug, Clone, Arguments)]
-pub struct Study {
-    #[command(subcommand)]
-    pub verb: Option<StudyVerb>,
-    /// What is compared (TOML or JSON)
-    #[arg(long, value_name = "FILE", required = true)]
-    pub config: Option<PathBuf>,
-    /// Only every n-th training, from the i-th on; `merge` puts the shards together
-    #[arg(long, value_name = "I/N", value_parser = shard)]
-    pub shard: Option<(usize, usize)>,
-    /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
-    pub out: PathBuf,
-}
-
-#[derive(Debug, Clone, Subcommand)]
-pub enum StudyVerb {
-    /// Puts the results of all shards together
-    #[command(after_help = "Example:\n  lacuna study merge shard1 shard2 --out study")]
-    Merge(Merge),
-}
-
-#[derive(Debug, Clone, Arguments)]
-pub struct Merge {
-    /// Folders that shards wrote into
-    #[arg(value_name = "DIR", required = true)]
-    pub folders: Vec<PathBuf>,
-    /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
-    pub out: PathBuf,
-}
-
-fn shard(text: &str) -> Result<(usize, usize), String> {
-    let parts = text.split_once('/').map(|(i, n)| (i.parse(), n.parse()));
-    match parts {
-        Some((Ok(i), Ok(n))) if 1 <= i && i <= n => Ok((i, n)),
-        _ => Err("i/n with i from 1 to n is needed, such as 2/4".into()),
-    }
 }
 
 fn probability(text: &str) -> Result<f64, String> {

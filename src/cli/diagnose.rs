@@ -7,11 +7,12 @@ use super::args::Diagnose as Args;
 use super::console::{Console, print};
 use super::failure::Failure;
 use super::outputs::{self, cannot_write};
-use super::{input, provenance};
+use super::{input, provenance, reported};
 use lacuna::data::Record;
-use lacuna::diagnose::{Diagnosis, Finding};
+use lacuna::diagnose::{Diagnosis, Finding, Outlook, Planner, Watch};
 use lacuna::file::{save_with, write_text};
 use lacuna::report::{Beside, Document, Provenance, Report, sentences};
+use lacuna::system::System;
 
 /// Files that a diagnosis leaves in its folder.
 const MODEL: &str = "extended.toml";
@@ -61,6 +62,27 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     look_for(&diagnosis, &records, test.as_ref(), results, look)
 }
 
+/// The experiments that would tell look-alikes apart, where there are some.
+fn outlook(
+    finding: &Finding,
+    system: &System,
+    records: &[Record],
+    look: &Console,
+) -> Option<Outlook> {
+    let mut effects = vec![];
+    for cause in finding.causes.iter().filter(|cause| !cause.indistinguishable.is_empty()) {
+        effects.push(cause.effect.clone());
+        effects.extend(cause.indistinguishable.iter().map(|other| other.effect.clone()));
+    }
+    if effects.is_empty() || look.stopped() {
+        return None;
+    }
+    effects.sort();
+    effects.dedup();
+    // a report without it is a report all the same
+    Planner::of(system).only(&effects).run(records, look).ok()
+}
+
 /// Runs a diagnosis, writes its files and says what it found.
 pub fn look_for(
     diagnosis: &Diagnosis<'_>,
@@ -74,14 +96,17 @@ pub fn look_for(
     fs::create_dir_all(out).map_err(|error| cannot_write(out, &error))?;
     look.hear_interrupts()?;
     let finding = diagnosis.run(records, test, look)?;
+    let outlook = outlook(&finding, diagnosis.system(), records, look);
     look.clear();
     let headline = sentences::headline(&finding);
     let mut header = vec!["Written by `lacuna diagnose`.".to_string()];
     header.extend(headline.lines().map(str::to_string).chain(from.same()));
     save_with(&finding.extended, &out.join(MODEL), &header)?;
-    let page = out.join(PAGE);
-    let report = Report::of(&finding).titled(title).from(&from);
-    report.write(&page).map_err(|error| cannot_write(&page, &error))?;
+    let mut report = Report::of(&finding).titled(title).from(&from).model(diagnosis.system());
+    if let Some(outlook) = &outlook {
+        report = report.outlook(outlook);
+    }
+    reported::write(&report.page(), out, PAGE)?;
     let beside = Beside { extended_model: MODEL, report: PAGE };
     let document = Document::of(&finding, beside, &from).text().map_err(Failure::unwritable)?;
     let json = out.join(DOCUMENT);

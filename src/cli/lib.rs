@@ -22,6 +22,7 @@ mod no_model;
 mod outputs;
 mod plan;
 mod provenance;
+mod reported;
 mod simulate;
 mod study;
 
@@ -61,6 +62,7 @@ fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         Command::Look(args) => missing::run(args, look),
         Command::Plan(plan) => plan::run(plan, look),
         Command::Check(check) => check::run(check, look),
+        Command::Report(report) => reported::run(report, look),
         Command::Models => list::models(look),
         Command::Effects => list::effects(look),
         Command::Completions { shell } => list::completions(*shell, look),

@@ -78,6 +78,11 @@ pub struct Diagnosis<'a> {
 }
 
 impl<'a> Diagnosis<'a> {
+    /// The system that is diagnosed.
+    pub fn system(&self) -> &'a System {
+        self.system
+    }
+
     /// A diagnosis of a system with the whole library and at most five causes.
     pub fn of(system: &'a System) -> Self {
         Self { system, allowed: Allowed::default(), max_causes: 5, init: Init::default() }

@@ -1,8 +1,9 @@
 //! One cause: its curve, its numbers, what looks like it.
 
-use super::page::{Page, share};
+use super::figure::{Figure, Role};
+use super::page::{Cell, Page, share};
+use super::parameters::interval;
 use super::sentences;
-use super::svg::Figure;
 use crate::diagnose::{Alternative, Cause, Curve, Finding, InRecord};
 use crate::digits::number;
 
@@ -12,7 +13,7 @@ pub fn unexplained(page: &mut Page, finding: &Finding) {
         return;
     };
     page.heading("What comes nearest");
-    page.raw(&figure(curve).svg());
+    page.figure(figure(curve));
     page.element(
         "p",
         "note",
@@ -28,7 +29,7 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
         if finding.causes.len() > 1 { format!("{}. ", index + 1) } else { String::new() };
     page.heading(&format!("{number_of}{}", title(cause)));
     for curve in finding.series.curves.iter().filter(|c| c.cause == index) {
-        page.raw(&figure(curve).svg());
+        page.figure(figure(curve));
         if !curve.slices.is_empty() {
             page.element(
                 "p",
@@ -44,19 +45,7 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
     let rows: Vec<Vec<String>> = cause
         .parameters
         .iter()
-        .map(|p| {
-            let spread = p.std_error.map_or_else(
-                || "not resolved by this record".into(),
-                |e| {
-                    format!(
-                        "{} to {}",
-                        number(p.value - 1.96 * e, Some(e)),
-                        number(p.value + 1.96 * e, Some(e))
-                    )
-                },
-            );
-            vec![p.name.clone(), number(p.value, p.std_error), spread, p.unit.clone()]
-        })
+        .map(|p| vec![p.name.clone(), number(p.value, p.std_error), interval(p), p.unit.clone()])
         .collect();
     if !rows.is_empty() {
         page.table(&["parameter", "#value", "95 % interval", "unit"], &rows);
@@ -76,17 +65,17 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
     let entry = |what: &str, a: &Alternative| {
         vec![
             what.into(),
-            a.effect.clone(),
-            a.into.clone(),
-            a.of.clone().unwrap_or_default(),
+            a.effect.as_str().into(),
+            a.into.as_str().into(),
+            a.of.clone().unwrap_or_default().into(),
             share(a.error_removed),
         ]
     };
-    let mut rows = vec![vec![
+    let mut rows: Vec<Vec<Cell>> = vec![vec![
         "named".into(),
-        cause.effect.clone(),
-        cause.into.clone(),
-        coordinates(cause),
+        cause.effect.as_str().into(),
+        cause.into.as_str().into(),
+        coordinates(cause).into(),
         share(cause.error_removed),
     ]];
     rows.extend(cause.indistinguishable.iter().map(|a| entry("looks alike", a)));
@@ -157,13 +146,16 @@ pub fn figure(curve: &Curve) -> Figure {
     let dots = curve.knots.iter().map(|&(z, w, e)| (z, w, 2.0 * e)).collect();
     let figure = Figure::new(&axis(&curve.coordinate, ""), &axis(&curve.channel, "missing in "))
         .height(320.0);
-    let figure =
-        if curve.knots.is_empty() { figure } else { figure.dots("free", "without a shape", dots) };
-    let slices = ["before", "law", "after"].into_iter().zip(&curve.slices);
+    let figure = if curve.knots.is_empty() {
+        figure
+    } else {
+        figure.dots(Role::Free, "without a shape", dots)
+    };
+    let slices = [Role::Before, Role::Law, Role::After].into_iter().zip(&curve.slices);
     let figure = slices
-        .fold(figure, |figure, (class, (label, points))| figure.line(class, label, points.clone()));
+        .fold(figure, |figure, (role, (label, points))| figure.line(role, label, points.clone()));
     if curve.law.is_empty() {
         return figure;
     }
-    figure.line("law", "the law named", curve.law.clone())
+    figure.line(Role::Law, "the law named", curve.law.clone())
 }

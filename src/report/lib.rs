@@ -1,32 +1,43 @@
 //! Turns results into one HTML file that needs nothing else.
 
-use lacuna_core::{data, digits, effect, evaluate, file};
+use lacuna_core::{data, digits, effect, evaluate, file, system};
 use lacuna_diagnose as diagnose;
 use lacuna_learn::train;
 use lacuna_likelihood as likelihood;
 
 mod analysis;
+mod apart;
+mod axis;
 mod cause;
+mod chart;
+mod column;
 mod distortion;
 mod document;
+mod escape;
+mod figure;
+mod html;
 mod missing;
+mod overlay;
 mod page;
+mod parameters;
 mod provenance;
 pub mod sentences;
 mod signals;
-pub(crate) mod svg;
+mod svg;
 mod tables;
+mod thin;
 mod training;
 
 use std::path::Path;
 
-use crate::diagnose::{Finding, Verdict};
+use crate::diagnose::{Finding, Outlook, Verdict};
 use crate::digits::number;
+use crate::system::System;
 pub use document::{Beside, Document, cause_document};
+pub use figure::{Figure, Role, Scale};
 pub use missing::MissingReport;
-pub use page::Page;
+pub use page::{Cell, Page, share};
 pub use provenance::{FileUsed, Provenance};
-pub use svg::{Figure, Scale};
 
 pub use training::{Shown, TrainingReport};
 
@@ -42,12 +53,15 @@ pub struct Report<'a> {
     finding: &'a Finding,
     title: String,
     from: Option<&'a Provenance>,
+    system: Option<&'a System>,
+    outlook: Option<&'a Outlook>,
 }
 
 impl<'a> Report<'a> {
     /// The report of a finding.
     pub fn of(finding: &'a Finding) -> Self {
-        Self { finding, title: "Diagnosis".into(), from: None }
+        let title = "Diagnosis".into();
+        Self { finding, title, from: None, system: None, outlook: None }
     }
 
     /// The same with where it is from: program, command, files, seed, date.
@@ -61,6 +75,20 @@ impl<'a> Report<'a> {
     #[must_use]
     pub fn titled(mut self, title: &str) -> Self {
         self.title = title.into();
+        self
+    }
+
+    /// The same with the model that was handed in, for a table of its parameters before and after.
+    #[must_use]
+    pub fn model(mut self, system: &'a System) -> Self {
+        self.system = Some(system);
+        self
+    }
+
+    /// The same with the experiments that would tell look-alikes apart.
+    #[must_use]
+    pub fn outlook(mut self, outlook: &'a Outlook) -> Self {
+        self.outlook = Some(outlook);
         self
     }
 
@@ -82,6 +110,11 @@ impl<'a> Report<'a> {
 
     /// The page.
     pub fn html(&self) -> String {
+        self.page().html()
+    }
+
+    /// The page as plain data: texts, tables and figures.
+    pub fn page(&self) -> Page {
         let finding = self.finding;
         let mut page = Page::default();
         page.element("p", "kicker", &self.title);
@@ -94,12 +127,16 @@ impl<'a> Report<'a> {
         }
         cause::unexplained(&mut page, finding);
         cause::alone(&mut page, finding);
+        apart::section(&mut page, finding, self.outlook);
         signals::sections(&mut page, &finding.series, finding);
         distortion::section(&mut page, finding);
+        if let Some(system) = self.system {
+            parameters::section(&mut page, finding, system);
+        }
         tables::sections(&mut page, finding);
         self.origin(&mut page);
-        page.raw(FOOTER);
-        page.html(&format!("{} - lacuna", self.title))
+        page.element("footer", "", FOOTER);
+        page.titled(&format!("{} - lacuna", self.title))
     }
 
     /// What was recorded, and where the page is from.
@@ -168,7 +205,7 @@ impl<'a> Report<'a> {
     }
 }
 
-const FOOTER: &str = "<footer>Read from top to bottom: what was found, how it shows, what else was \
+const FOOTER: &str = "Read from top to bottom: what was found, how it shows, what else was \
 considered, what is left. A value \"a \u{b1} b\" has b as two standard errors. \"Removable\" is the mean \
 square error above the noise floor. A look-alike would remove nearly as much: the record cannot tell \
-it from the cause named; a runner-up would remove clearly less.</footer>";
+it from the cause named; a runner-up would remove clearly less.";

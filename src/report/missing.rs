@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use super::page::{Page, share};
-use super::svg::{Figure, thinned};
+use super::figure::{Figure, Role};
+use super::overlay::with_unit as named;
+use super::page::{Cell, Page, share};
 use crate::digits::number;
 use crate::likelihood::MissingForce;
 
-/// Stretches that a drawn series is thinned to.
+/// Points of a drawn band at most.
 const STRETCHES: usize = 900;
 /// Dots of a cloud at most.
 const DOTS: usize = 1500;
@@ -57,16 +58,16 @@ impl<'a> MissingReport<'a> {
              much of the force a curve of that coordinate explains on data not used to draw the curve. \
              A smoother blurs steps where the noise is large: this is a picture, not a finding.",
         );
-        let rows: Vec<Vec<String>> = self
+        let rows: Vec<Vec<Cell>> = self
             .missing
             .iter()
             .map(|force| {
                 let first = force.explained_by.first();
                 vec![
-                    force.channel.clone(),
-                    with_unit(force.rms, &force.unit),
-                    first.map_or(String::new(), |e| e.coordinate.clone()),
-                    first.map_or(String::new(), |e| share(e.share)),
+                    force.channel.as_str().into(),
+                    with_unit(force.rms, &force.unit).into(),
+                    first.map_or("".into(), |e| e.coordinate.as_str().into()),
+                    first.map_or("".into(), |e| share(e.share)),
                 ]
             })
             .collect();
@@ -74,7 +75,7 @@ impl<'a> MissingReport<'a> {
         for force in self.missing {
             self.channel(&mut page, force);
         }
-        page.html(title)
+        page.titled(title).html()
     }
 
     /// Writes the page.
@@ -89,10 +90,6 @@ impl<'a> MissingReport<'a> {
     fn channel(&self, page: &mut Page, force: &MissingForce) {
         page.heading(&force.channel);
         page.element("p", "", &line(force));
-        let named = |name: &str, unit: &str| match unit {
-            "" => name.to_string(),
-            unit => format!("{name} [{unit}]"),
-        };
         let y = named("missing force", &force.unit);
         let time = |k: usize| k as f64 * self.sampling_time;
         let values: Vec<(f64, f64)> =
@@ -105,12 +102,12 @@ impl<'a> MissingReport<'a> {
                 (time(k), v - two, v + two)
             })
             .collect();
-        let figure = Figure::new("time [s]", &y).band("after", "95 %", band).line(
-            "after",
-            "smoothed",
-            thinned(&values, STRETCHES),
-        );
-        page.raw(&figure.svg());
+        let figure = Figure::new("time [s]", &y)
+            .titled(&format!("Missing force on {} over time", force.channel))
+            .linked("time")
+            .band(Role::After, "95 %", band)
+            .line(Role::After, "smoothed", values);
+        page.figure(figure);
         for explained in force.explained_by.iter().take(DRAWN) {
             let x = named(&explained.coordinate, &explained.unit);
             let step = (force.values.len() / DOTS).max(1);
@@ -120,12 +117,13 @@ impl<'a> MissingReport<'a> {
                 .map(|k| (explained.values[k], force.values[k], 0.0))
                 .collect();
             let label = format!("share {:.0} %", 100.0 * explained.share);
-            let figure = Figure::new(&x, &y).dots("measured", "samples", cloud).line(
-                "law",
-                &label,
-                explained.curve.clone(),
-            );
-            page.raw(&figure.svg());
+            let title =
+                format!("Missing force on {} against {}", force.channel, explained.coordinate);
+            let figure = Figure::new(&x, &y)
+                .titled(&title)
+                .dots(Role::Measured, "samples", cloud)
+                .line(Role::Law, &label, explained.curve.clone());
+            page.figure(figure);
         }
     }
 }

@@ -1,15 +1,16 @@
-//! Signals and residuals: in time, in frequency, against the inputs.
+//! Signals and residuals: in time, in frequency, against their own past and the inputs'.
 
 use super::analysis::{correlation, density};
+use super::figure::{Figure, Role, Scale};
+use super::overlay::{Overlay, with_unit};
 use super::page::Page;
-use super::svg::{Figure, Scale, thinned};
 use crate::diagnose::{Finding, Series};
 
-/// Stretches that a drawn series is thinned to.
-const STRETCHES: usize = 900;
 /// Samples of the close-up.
 const CLOSE: usize = 400;
 const LAGS: usize = 60;
+/// Half width of a 99 % interval in standard deviations.
+const WIDE: f64 = 2.576;
 
 /// All sections on the estimation data.
 pub fn sections(page: &mut Page, series: &Series, finding: &Finding) {
@@ -20,56 +21,58 @@ pub fn sections(page: &mut Page, series: &Series, finding: &Finding) {
         else {
             continue;
         };
-        let of_unit = if unit.is_empty() { String::new() } else { format!(" [{unit}]") };
+        let mut overlay = Overlay {
+            output: (name, unit),
+            step: series.sampling_time,
+            measured,
+            simulated: vec![(Role::Before, "model", before)],
+            borders: series.segments.iter().skip(1).map(|segment| segment.start).collect(),
+        };
+        if found {
+            overlay.simulated.push((Role::After, "extended model", after));
+        }
         page.heading(&format!("{name}: measured and simulated"));
-        let dt = series.sampling_time;
         let n = measured.len();
-        let timed = |values: &[f64]| -> Vec<(f64, f64)> {
-            values.iter().enumerate().map(|(k, v)| (k as f64 * dt, *v)).collect()
-        };
-        let residual = |simulated: &[f64]| -> Vec<f64> {
-            measured.iter().zip(simulated).map(|(a, b)| a - b).collect()
-        };
-        let (rb, ra) = (residual(before), residual(after));
-        // a close-up where the model is most wrong, the whole below
-        let centre = rb
-            .iter()
-            .enumerate()
-            .filter(|(_, v)| v.is_finite())
-            .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()))
-            .map_or(0, |(k, _)| k);
-        let from = centre.saturating_sub(CLOSE / 2).min(n.saturating_sub(CLOSE));
-        let to = (from + CLOSE).min(n);
-        let close = |values: &[f64]| -> Vec<(f64, f64)> {
-            (from..to).map(|k| (k as f64 * dt, values[k])).collect()
-        };
-        let mut figure = Figure::new("time [s]", &format!("{name}{of_unit}"))
-            .line("measured", "measured", close(measured))
-            .line("before", "model", close(before));
-        if found {
-            figure = figure.line("after", "extended model", close(after));
-        }
-        page.raw(&figure.svg());
-        page.element("p", "note", "Close-up where the model is most wrong.");
-        let mut figure = Figure::new("time [s]", &format!("residual of {name}{of_unit}")).line(
-            "before",
-            "model",
-            thinned(&timed(&rb), STRETCHES),
-        );
-        if found {
-            figure = figure.line("after", "extended model", thinned(&timed(&ra), STRETCHES));
-        }
+        let from = overlay.worst().saturating_sub(CLOSE / 2).min(n.saturating_sub(CLOSE));
+        page.figure(overlay.signal(from, CLOSE));
+        let (rb, ra) = (overlay.residual(before), overlay.residual(after));
+        let mut figure = overlay.left();
         if series.split > 0 && series.split < n && series.segments.len() < 2 {
-            figure = figure.upright("quiet", "what follows chose", series.split as f64 * dt);
+            let at = series.split as f64 * series.sampling_time;
+            figure = figure.upright(Role::Quiet, "later samples chose the causes", at);
         }
         if let Some(flagged) = series.flagged.get(o).filter(|f| !f.is_empty()) {
-            let dots = flagged.iter().filter_map(|&k| Some((k as f64 * dt, *rb.get(k)?, 0.0)));
-            figure = figure.dots("law", "flagged", dots.collect());
+            let at = |k: &usize| Some((*k as f64 * series.sampling_time, *rb.get(*k)?, 0.0));
+            figure = figure.dots(Role::Law, "flagged", flagged.iter().filter_map(at).collect());
         }
-        page.raw(&figure.svg());
-        page.element("p", "note", "Measured minus simulated, the whole record.");
-        spectrum(page, finding, name, &of_unit, (&rb, &ra), dt, found);
-        against_inputs(page, series, name, (&rb, &ra), found);
+        page.figure(figure);
+        if o == 0 {
+            inputs(page, series);
+        }
+        page.element(
+            "p",
+            "note",
+            "Begins where the model is most wrong. Mark a range to zoom, double-click for the whole \
+             record; with shift the mouse moves the range, with ctrl the wheel zooms. The names \
+             above a figure switch its lines on and off.",
+        );
+        let residuals = (rb.as_slice(), ra.as_slice());
+        spectrum(page, finding, (name, unit), residuals, series.sampling_time, found);
+        against_itself(page, name, residuals, found);
+        against_inputs(page, series, name, residuals, found);
+    }
+}
+
+/// The inputs, linked with the outputs along time.
+fn inputs(page: &mut Page, series: &Series) {
+    for (name, unit, values) in &series.inputs {
+        let timed = values.iter().enumerate().map(|(k, v)| (k as f64 * series.sampling_time, *v));
+        let figure = Figure::new("time [s]", &with_unit(name, unit))
+            .titled(&format!("Input {name}"))
+            .height(130.0)
+            .linked("time")
+            .line(Role::Free, name, timed.collect());
+        page.figure(figure);
     }
 }
 
@@ -80,8 +83,7 @@ fn filled(values: &[f64]) -> Vec<f64> {
 fn spectrum(
     page: &mut Page,
     finding: &Finding,
-    name: &str,
-    unit: &str,
+    (name, unit): (&str, &str),
     (before, after): (&[f64], &[f64]),
     dt: f64,
     found: bool,
@@ -89,24 +91,62 @@ fn spectrum(
     let root = |x: &[f64]| -> Vec<(f64, f64)> {
         density(&filled(x), dt).into_iter().map(|(f, p)| (f, p.sqrt())).collect()
     };
-    page.element("h3", "", &format!("Spectrum of the residual of {name}"));
-    let mut figure = Figure::new("frequency [Hz]", &format!("density{unit} / \u{221a}Hz"))
+    let unit = if unit.is_empty() { String::new() } else { format!(" [{unit}/\u{221a}Hz]") };
+    let mut figure = Figure::new("frequency [Hz]", &format!("amplitude density{unit}"))
+        .titled(&format!("Spectrum of the residual of {name}"))
         .scales(Scale::Log, Scale::Log)
-        .line("before", "model", root(before));
+        .line(Role::Before, "model", root(before));
     if found {
-        figure = figure.line("after", "extended model", root(after));
+        figure = figure.line(Role::After, "extended model", root(after));
     }
     if let Some(floor) = finding.noise_floor.get(name).filter(|f| f.std > 0.0) {
         let label = format!("noise floor ({})", floor.method);
-        figure = figure.level("floor", &label, floor.std * (2.0 * dt).sqrt());
+        figure = figure.level(Role::Floor, &label, floor.std * (2.0 * dt).sqrt());
     }
-    page.raw(&figure.svg());
+    page.figure(figure);
     page.element(
         "p",
         "note",
-        "What stands above the noise floor is not noise. The floor is drawn as white noise of the \
-         estimated size.",
+        "Root of the power spectral density (Welch, Hann window). The floor is drawn as white noise \
+         of the estimated size: what stands above it over a band is not white noise of that size.",
     );
+}
+
+/// A correlation over delays with its 99 % band.
+fn correlogram(
+    title: &str,
+    band: f64,
+    before: Vec<f64>,
+    after: Option<Vec<f64>>,
+    first: usize,
+) -> Figure {
+    let lagged = |c: Vec<f64>| -> Vec<(f64, f64)> {
+        c.into_iter().enumerate().skip(first).map(|(k, v)| (k as f64, v)).collect()
+    };
+    let last = (before.len().max(1) - 1) as f64;
+    let band = vec![(first as f64, -band, band), (last, -band, band)];
+    let figure = Figure::new("delay [samples]", "correlation")
+        .titled(title)
+        .height(190.0)
+        .linked("delay")
+        .band(Role::Floor, "99 % band", band)
+        .line(Role::Before, "model", lagged(before));
+    match after {
+        Some(after) => figure.line(Role::After, "extended model", lagged(after)),
+        None => figure,
+    }
+}
+
+fn against_itself(page: &mut Page, name: &str, (before, after): (&[f64], &[f64]), found: bool) {
+    let own = |x: &[f64]| correlation(&filled(x), &filled(x), LAGS).0;
+    let b = own(before);
+    if b.is_empty() {
+        return;
+    }
+    // of white noise, whatever its distribution (Bartlett)
+    let band = WIDE / (before.len() as f64).sqrt();
+    let title = format!("Autocorrelation of the residual of {name}");
+    page.figure(correlogram(&title, band, b, found.then(|| own(after)), 1));
 }
 
 fn against_inputs(
@@ -117,25 +157,14 @@ fn against_inputs(
     found: bool,
 ) {
     for (input, _, u) in &series.inputs {
-        let lagged = |c: Vec<f64>| -> Vec<(f64, f64)> {
-            c.into_iter().enumerate().map(|(k, v)| (k as f64, v)).collect()
-        };
         let u = filled(u);
         let (b, bound) = correlation(&filled(before), &u, LAGS);
         let (a, after_bound) = correlation(&filled(after), &u, LAGS);
         if b.is_empty() {
             continue;
         }
-        page.element("h3", "", &format!("Residual of {name} against the past of {input}"));
+        let title = format!("Residual of {name} against the past of {input}");
         let bound = if found { after_bound } else { bound };
-        let last = (b.len() - 1) as f64;
-        let mut figure = Figure::new("delay [samples]", "correlation")
-            .height(210.0)
-            .band("floor", "99 % band", vec![(0.0, -bound, bound), (last, -bound, bound)])
-            .line("before", "model", lagged(b));
-        if found {
-            figure = figure.line("after", "extended model", lagged(a));
-        }
-        page.raw(&figure.svg());
+        page.figure(correlogram(&title, bound, b, found.then_some(a), 0));
     }
 }

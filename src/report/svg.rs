@@ -1,135 +1,169 @@
-//! Plots as SVG: lines, bands, dots with error bars, logarithmic axes.
+//! The still picture of a figure as SVG: for print, for a page without scripts, for a file.
 
 use std::fmt::Write;
 
-/// Where a number lies along an axis.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Scale {
-    /// Even steps.
-    Linear,
-    /// Even ratios; what is not positive is left out.
-    Log,
-}
-
-/// What is drawn.
-#[derive(Debug, Clone)]
-enum Item {
-    Line(Vec<(f64, f64)>),
-    Band(Vec<(f64, f64, f64)>),
-    Dots(Vec<(f64, f64, f64)>),
-    Level(f64),
-    Upright(f64),
-}
-
-/// A plot with two axes.
-#[derive(Debug, Clone)]
-pub struct Figure {
-    x: (String, Scale),
-    y: (String, Scale),
-    height: f64,
-    items: Vec<(Item, &'static str, String)>,
-    /// What stands at 1, 2, .. along x, instead of numbers.
-    names: Vec<String>,
-}
+use super::axis::{Range, label, position, ticks};
+use super::escape::escape;
+use super::figure::{Figure, Item, Scale, Shape};
+use super::thin::thinned;
 
 const WIDTH: f64 = 760.0;
 const LEFT: f64 = 78.0;
 const RIGHT: f64 = 12.0;
 const TOP: f64 = 12.0;
 const BOTTOM: f64 = 44.0;
+/// Height of one row of the legend.
+const ROW: f64 = 18.0;
+/// Stretches that a line is thinned to: more would fall on the same points of print.
+const STRETCHES: usize = 380;
+/// Characters of a label that the legend shows.
+const LONGEST: usize = 60;
+
+/// Where things lie in the picture.
+struct Frame {
+    x: ((f64, f64), Scale),
+    y: ((f64, f64), Scale),
+    top: f64,
+    width: f64,
+    height: f64,
+}
+
+impl Frame {
+    fn x(&self, v: f64) -> f64 {
+        LEFT + self.width * position(v, self.x.0, self.x.1)
+    }
+
+    fn y(&self, v: f64) -> f64 {
+        self.top + self.height * (1.0 - position(v, self.y.0, self.y.1))
+    }
+
+    /// Whether a point can be drawn on these scales.
+    fn shows(&self, x: f64, y: f64) -> bool {
+        let fits = |v: f64, scale| v.is_finite() && (scale == Scale::Linear || v > 0.0);
+        fits(x, self.x.1) && fits(y, self.y.1)
+    }
+}
 
 impl Figure {
-    /// An empty plot with the names of its axes.
-    pub fn new(x: &str, y: &str) -> Self {
-        Self {
-            x: (x.into(), Scale::Linear),
-            y: (y.into(), Scale::Linear),
-            height: 260.0,
-            items: vec![],
-            names: vec![],
+    /// The picture as a file of its own, with its colours in it.
+    pub fn file(&self) -> String {
+        let style = include_str!("style.css");
+        let own = format!("<style>{style}text{{font-family:system-ui,sans-serif}}</style>");
+        self.svg().replacen('>', &format!(">{own}"), 1)
+    }
+
+    /// The picture as an `<svg>` element whose colours come from the page's style.
+    pub fn svg(&self) -> String {
+        let items: Vec<Item> = self.items.iter().filter(|i| !i.off).map(|i| self.seen(i)).collect();
+        let Some((xr, yr)) = self.ranges(&items) else {
+            return "<p class=\"note\">Nothing to draw.</p>".into();
+        };
+        let (legend, rows) = legend(&items);
+        let top = TOP + ROW * rows as f64;
+        let frame = Frame {
+            x: (xr, self.x.1),
+            y: (yr, self.y.1),
+            top,
+            width: WIDTH - LEFT - RIGHT,
+            height: self.height - TOP - ROW - BOTTOM,
+        };
+        let whole = top + frame.height + BOTTOM;
+        let mut s = format!(
+            "<svg viewBox=\"0 0 {WIDTH} {whole}\" role=\"img\" aria-label=\"{}\" xmlns=\"http://www.w3.org/2000/svg\">",
+            escape(&self.title)
+        );
+        self.axes(&mut s, &frame);
+        for item in &items {
+            draw(&mut s, item, &frame);
         }
+        s.push_str(&legend);
+        let _ = write!(
+            s,
+            "<text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+            LEFT + frame.width / 2.0,
+            whole - 8.0,
+            escape(&self.x.0)
+        );
+        let _ = write!(
+            s,
+            "<text class=\"axis\" transform=\"translate(14 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text></svg>",
+            top + frame.height / 2.0,
+            escape(&self.y.0)
+        );
+        s
     }
 
-    /// The same with names at 1, 2, .. along x.
-    #[must_use]
-    pub fn named(mut self, names: &[String]) -> Self {
-        self.names = names.to_vec();
-        self
+    /// An item as the picture shows it: within the view, and thinned.
+    fn seen(&self, item: &Item) -> Item {
+        let inside = |x: f64| self.view.is_none_or(|(from, to)| (from..=to).contains(&x));
+        let shape = match &item.shape {
+            Shape::Band(points) => {
+                Shape::Band(points.iter().copied().filter(|p| inside(p.0)).collect())
+            }
+            Shape::Dots(points) => {
+                Shape::Dots(points.iter().copied().filter(|p| inside(p.0)).collect())
+            }
+            other => match other.points() {
+                Some(points) => {
+                    let seen: Vec<_> = points.iter().copied().filter(|p| inside(p.0)).collect();
+                    Shape::Line(thinned(&seen, STRETCHES))
+                }
+                None => other.clone(),
+            },
+        };
+        Item { shape, ..item.clone() }
     }
 
-    /// The same with other scales.
-    #[must_use]
-    pub fn scales(mut self, x: Scale, y: Scale) -> Self {
-        (self.x.1, self.y.1) = (x, y);
-        self
-    }
-
-    /// The same with another height, 260 being the usual one.
-    #[must_use]
-    pub fn height(mut self, height: f64) -> Self {
-        self.height = height;
-        self
-    }
-
-    /// Adds a line; `class` picks its colour, an empty `label` keeps it out of the legend.
-    #[must_use]
-    pub fn line(self, class: &'static str, label: &str, points: Vec<(f64, f64)>) -> Self {
-        self.item(Item::Line(points), class, label)
-    }
-
-    /// Adds a band between two values at every x.
-    #[must_use]
-    pub fn band(self, class: &'static str, label: &str, points: Vec<(f64, f64, f64)>) -> Self {
-        self.item(Item::Band(points), class, label)
-    }
-
-    /// Adds dots with bars of so much up and down.
-    #[must_use]
-    pub fn dots(self, class: &'static str, label: &str, points: Vec<(f64, f64, f64)>) -> Self {
-        self.item(Item::Dots(points), class, label)
-    }
-
-    /// Adds a level line.
-    #[must_use]
-    pub fn level(self, class: &'static str, label: &str, y: f64) -> Self {
-        self.item(Item::Level(y), class, label)
-    }
-
-    /// Adds an upright line.
-    #[must_use]
-    pub fn upright(self, class: &'static str, label: &str, x: f64) -> Self {
-        self.item(Item::Upright(x), class, label)
-    }
-
-    fn item(mut self, item: Item, class: &'static str, label: &str) -> Self {
-        self.items.push((item, class, label.into()));
-        self
-    }
-
-    fn ranges(&self) -> Option<((f64, f64), (f64, f64))> {
+    fn ranges(&self, items: &[Item]) -> Option<((f64, f64), (f64, f64))> {
         let (mut x, mut y) = (Range::new(self.x.1), Range::new(self.y.1));
-        for (item, _, _) in &self.items {
-            match item {
-                Item::Line(points) => points.iter().for_each(|p| {
+        for item in items {
+            match &item.shape {
+                Shape::Line(points) => points.iter().for_each(|p| {
                     x.add(p.0);
                     y.add(p.1);
                 }),
-                Item::Band(points) => points.iter().for_each(|p| {
+                Shape::Band(points) => points.iter().for_each(|p| {
                     x.add(p.0);
                     y.add(p.1);
                     y.add(p.2);
                 }),
-                Item::Dots(points) => points.iter().for_each(|p| {
+                Shape::Dots(points) => points.iter().for_each(|p| {
                     x.add(p.0);
                     y.add(p.1);
                 }),
-                Item::Level(value) => y.add(*value),
-                Item::Upright(value) => x.add(*value),
+                Shape::Level(value) => y.add(*value),
+                Shape::Upright(value) if self.view.is_none() => x.add(*value),
+                Shape::Upright(_) | Shape::Difference(..) => {}
             }
         }
         // a dot on the frame would be half a dot
-        let dots = self.items.iter().any(|(item, _, _)| matches!(item, Item::Dots(_)));
+        let dots = items.iter().any(|item| matches!(item.shape, Shape::Dots(_)));
         Some((x.widened(if dots { 0.02 } else { 0.0 })?, y.widened(0.05)?))
+    }
+
+    fn axes(&self, s: &mut String, frame: &Frame) {
+        let bottom = frame.top + frame.height;
+        for (tick, text) in self.marks(frame.x.0) {
+            let x = frame.x(tick);
+            let _ = write!(
+                s,
+                "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{:.1}\" y2=\"{bottom:.1}\"/><text class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
+                frame.top,
+                bottom + 16.0,
+                escape(&text)
+            );
+        }
+        for tick in ticks(frame.y.0, frame.y.1, 5) {
+            let y = frame.y(tick);
+            let _ = write!(
+                s,
+                "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/><text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
+                LEFT + frame.width,
+                LEFT - 6.0,
+                y + 4.0,
+                label(tick, frame.y.0, frame.y.1)
+            );
+        }
     }
 
     /// Where something stands along x, and what.
@@ -140,146 +174,77 @@ impl Figure {
         }
         self.names.iter().zip(1..).map(|(name, at)| (f64::from(at), name.clone())).collect()
     }
-
-    /// The plot as a file of its own, with its colours in it.
-    pub fn file(&self) -> String {
-        let style = include_str!("style.css");
-        let own = format!("<style>{style}text{{font-family:system-ui,sans-serif}}</style>");
-        self.drawing().replacen('>', &format!(">{own}"), 1)
-    }
-
-    /// The plot in a box that scrolls where the page is too narrow for it to be read.
-    pub fn svg(&self) -> String {
-        format!("<div class=\"scroll\">{}</div>", self.drawing())
-    }
-
-    /// The plot as an `<svg>` element whose colours come from the page's style.
-    fn drawing(&self) -> String {
-        let Some((xr, yr)) = self.ranges() else {
-            return "<p class=\"note\">Nothing to draw.</p>".into();
-        };
-        let legend: Vec<(&Item, &str, &str)> = self
-            .items
-            .iter()
-            .filter(|(_, _, label)| !label.is_empty())
-            .map(|(item, class, label)| (item, *class, label.as_str()))
-            .collect();
-        let top = if legend.is_empty() { TOP } else { TOP + 20.0 };
-        let (w, h) = (WIDTH - LEFT - RIGHT, self.height - top - BOTTOM);
-        let px = |v: f64| LEFT + w * position(v, xr, self.x.1);
-        let py = |v: f64| top + h * (1.0 - position(v, yr, self.y.1));
-        let mut s = format!(
-            "<svg viewBox=\"0 0 {WIDTH} {}\" role=\"img\" aria-label=\"{}\" xmlns=\"http://www.w3.org/2000/svg\">",
-            self.height,
-            escape(&format!("{} against {}", self.y.0, self.x.0))
-        );
-        for (tick, text) in self.marks(xr) {
-            let x = px(tick);
-            let _ = write!(
-                s,
-                "<line class=\"grid\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{top}\" y2=\"{:.1}\"/><text class=\"tick\" x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
-                top + h,
-                top + h + 16.0,
-                escape(&text)
-            );
-        }
-        for tick in ticks(yr, self.y.1, 5) {
-            let y = py(tick);
-            let _ = write!(
-                s,
-                "<line class=\"grid\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/><text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-                LEFT + w,
-                LEFT - 6.0,
-                y + 4.0,
-                label(tick, yr, self.y.1)
-            );
-        }
-        for (item, class, _) in &self.items {
-            draw(&mut s, item, class, &px, &py, (top, h), w, (self.x.1, self.y.1));
-        }
-        let mut at = LEFT;
-        for (item, class, text) in legend {
-            let mark = match item {
-                Item::Dots(_) => format!(
-                    "<circle class=\"{class} dot\" cx=\"{:.1}\" cy=\"{TOP}\" r=\"3\"/>",
-                    at + 9.0
-                ),
-                Item::Band(_) => format!(
-                    "<rect class=\"{class} band\" x=\"{at:.1}\" y=\"{:.1}\" width=\"18\" height=\"8\"/>",
-                    TOP - 4.0
-                ),
-                _ => format!(
-                    "<line class=\"{class} line\" x1=\"{at:.1}\" x2=\"{:.1}\" y1=\"{TOP}\" y2=\"{TOP}\"/>",
-                    at + 18.0
-                ),
-            };
-            let _ = write!(
-                s,
-                "{mark}<text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
-                at + 24.0,
-                TOP + 4.0,
-                escape(text)
-            );
-            at += 44.0 + 6.6 * text.chars().count() as f64;
-        }
-        let _ = write!(
-            s,
-            "<text class=\"axis\" x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
-            LEFT + w / 2.0,
-            self.height - 8.0,
-            escape(&self.x.0)
-        );
-        let _ = write!(
-            s,
-            "<text class=\"axis\" transform=\"translate(14 {:.1}) rotate(-90)\" text-anchor=\"middle\">{}</text></svg>",
-            top + h / 2.0,
-            escape(&self.y.0)
-        );
-        s
-    }
 }
 
-#[allow(clippy::too_many_arguments)]
-fn draw(
-    s: &mut String,
-    item: &Item,
-    class: &str,
-    px: &dyn Fn(f64) -> f64,
-    py: &dyn Fn(f64) -> f64,
-    (top, h): (f64, f64),
-    w: f64,
-    scales: (Scale, Scale),
-) {
-    let seen = |x: f64, y: f64| {
-        let fits = |v: f64, scale| v.is_finite() && (scale == Scale::Linear || v > 0.0);
-        fits(x, scales.0) && fits(y, scales.1)
-    };
-    match item {
-        Item::Line(points) => {
-            for piece in points.split(|p| !seen(p.0, p.1)).filter(|piece| !piece.is_empty()) {
-                let path: Vec<String> =
-                    piece.iter().map(|p| format!("{:.1},{:.1}", px(p.0), py(p.1))).collect();
-                let _ =
-                    write!(s, "<polyline class=\"{class} line\" points=\"{}\"/>", path.join(" "));
+/// The legend and how many rows it has.
+fn legend(items: &[Item]) -> (String, usize) {
+    let (mut s, mut at, mut row) = (String::new(), LEFT, 0);
+    let listed = items.iter().filter(|item| !item.label.is_empty());
+    for item in listed {
+        let text: String = item.label.chars().take(LONGEST).collect();
+        let width = 44.0 + 6.6 * text.chars().count() as f64;
+        if row == 0 {
+            row = 1;
+        } else if at + width > WIDTH - RIGHT {
+            (at, row) = (LEFT, row + 1);
+        }
+        let y = TOP + ROW * (row as f64 - 1.0);
+        let class = item.role.class();
+        let mark = match item.shape {
+            Shape::Dots(_) => {
+                format!("<circle class=\"{class} dot\" cx=\"{:.1}\" cy=\"{y}\" r=\"3\"/>", at + 9.0)
+            }
+            Shape::Band(_) => format!(
+                "<rect class=\"{class} band\" x=\"{at:.1}\" y=\"{:.1}\" width=\"18\" height=\"8\"/>",
+                y - 4.0
+            ),
+            _ => format!(
+                "<line class=\"{class} line\" x1=\"{at:.1}\" x2=\"{:.1}\" y1=\"{y}\" y2=\"{y}\"/>",
+                at + 18.0
+            ),
+        };
+        let _ = write!(
+            s,
+            "{mark}<text class=\"tick\" x=\"{:.1}\" y=\"{:.1}\">{}</text>",
+            at + 24.0,
+            y + 4.0,
+            escape(&text)
+        );
+        at += width;
+    }
+    (s, row)
+}
+
+fn draw(s: &mut String, item: &Item, frame: &Frame) {
+    let class = item.role.class();
+    let (top, bottom, right) = (frame.top, frame.top + frame.height, LEFT + frame.width);
+    match &item.shape {
+        Shape::Line(points) => {
+            let seen = |p: &(f64, f64)| frame.shows(p.0, p.1);
+            for piece in points.split(|p| !seen(p)).filter(|piece| !piece.is_empty()) {
+                let path = piece.iter().map(|p| format!("{:.1},{:.1}", frame.x(p.0), frame.y(p.1)));
+                let path: Vec<String> = path.collect();
+                let path = path.join(" ");
+                let _ = write!(s, "<polyline class=\"{class} line\" points=\"{path}\"/>");
             }
         }
-        Item::Band(points) => {
-            let there = || points.iter().filter(|p| seen(p.0, p.1) && seen(p.0, p.2));
-            let up = there().map(|p| format!("{:.1},{:.1}", px(p.0), py(p.2)));
-            let back = there().rev().map(|p| format!("{:.1},{:.1}", px(p.0), py(p.1)));
+        Shape::Band(points) => {
+            let there = || points.iter().filter(|p| frame.shows(p.0, p.1) && frame.shows(p.0, p.2));
+            let up = there().map(|p| format!("{:.1},{:.1}", frame.x(p.0), frame.y(p.2)));
+            let back = there().rev().map(|p| format!("{:.1},{:.1}", frame.x(p.0), frame.y(p.1)));
             let path: Vec<String> = up.chain(back).collect();
             let _ = write!(s, "<polygon class=\"{class} band\" points=\"{}\"/>", path.join(" "));
         }
-        Item::Dots(points) => {
-            for p in points.iter().filter(|p| seen(p.0, p.1)) {
-                let (x, y) = (px(p.0), py(p.1));
-                if p.2 > 0.0 && seen(p.0, p.1 - p.2) {
-                    let clamp = |v: f64| v.clamp(top, top + h);
+        Shape::Dots(points) => {
+            for p in points.iter().filter(|p| frame.shows(p.0, p.1)) {
+                let (x, y) = (frame.x(p.0), frame.y(p.1));
+                if p.2 > 0.0 && frame.shows(p.0, p.1 - p.2) {
+                    let within = |v: f64| frame.y(v).clamp(top, bottom);
                     let _ = write!(
                         s,
                         "<line class=\"{class} bar\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{:.1}\" y2=\"{:.1}\"/>",
-                        clamp(py(p.1 - p.2)),
-                        clamp(py(p.1 + p.2))
+                        within(p.1 - p.2),
+                        within(p.1 + p.2)
                     );
                 }
                 let _ = write!(
@@ -288,153 +253,45 @@ fn draw(
                 );
             }
         }
-        Item::Level(value) => {
-            let y = py(*value);
+        Shape::Level(value) => {
+            let y = frame.y(*value);
             let _ = write!(
                 s,
-                "<line class=\"{class} line\" x1=\"{LEFT}\" x2=\"{:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/>",
-                LEFT + w
+                "<line class=\"{class} line\" x1=\"{LEFT}\" x2=\"{right:.1}\" y1=\"{y:.1}\" y2=\"{y:.1}\"/>"
             );
         }
-        Item::Upright(value) => {
-            let x = px(*value);
+        Shape::Upright(value) if (frame.x.0.0..=frame.x.0.1).contains(value) => {
+            let x = frame.x(*value);
             let _ = write!(
                 s,
-                "<line class=\"{class} line\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{top}\" y2=\"{:.1}\"/>",
-                top + h
+                "<line class=\"{class} line\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{top:.1}\" y2=\"{bottom:.1}\"/>"
             );
         }
+        Shape::Upright(_) | Shape::Difference(..) => {}
     }
-}
-
-struct Range {
-    scale: Scale,
-    low: f64,
-    high: f64,
-}
-
-impl Range {
-    fn new(scale: Scale) -> Self {
-        Self { scale, low: f64::INFINITY, high: f64::NEG_INFINITY }
-    }
-
-    fn add(&mut self, value: f64) {
-        if value.is_finite() && (self.scale == Scale::Linear || value > 0.0) {
-            self.low = self.low.min(value);
-            self.high = self.high.max(value);
-        }
-    }
-
-    /// The range with a margin on both sides; `None` where nothing was added.
-    fn widened(&self, margin: f64) -> Option<(f64, f64)> {
-        if self.low > self.high {
-            return None;
-        }
-        if self.scale == Scale::Log {
-            let ratio = (self.high / self.low).powf(margin).max(1.0 + 2.0 * margin);
-            return Some((self.low / ratio, self.high * ratio));
-        }
-        let size = match self.high - self.low {
-            0.0 if self.high == 0.0 => 1.0,
-            0.0 => self.high.abs(),
-            size => size,
-        };
-        let margin = if self.high == self.low { 0.5 } else { margin };
-        Some((self.low - margin * size, self.high + margin * size))
-    }
-}
-
-fn position(v: f64, (low, high): (f64, f64), scale: Scale) -> f64 {
-    let share = match scale {
-        Scale::Linear => (v - low) / (high - low),
-        Scale::Log => (v.max(low) / low).ln() / (high / low).ln(),
-    };
-    share.clamp(-0.2, 1.2)
-}
-
-/// Round values within a range.
-fn ticks((low, high): (f64, f64), scale: Scale, about: usize) -> Vec<f64> {
-    if scale == Scale::Log {
-        let (first, last) = (low.log10().ceil() as i32, high.log10().floor() as i32);
-        let step = ((last - first) / about as i32).max(1) as usize;
-        let powers: Vec<f64> = (first..=last).step_by(step).map(|e| 10f64.powi(e)).collect();
-        if powers.len() > 2 {
-            return powers;
-        }
-        let decades = (first - 1..=last).map(|e| 10f64.powi(e));
-        let all = decades.flat_map(|power| [1.0, 2.0, 5.0].map(|m| m * power));
-        return all.filter(|tick| (low..=high).contains(tick)).collect();
-    }
-    let raw = (high - low) / about as f64;
-    let power = 10f64.powf(raw.log10().floor());
-    let step =
-        [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|s| *s >= raw).unwrap_or(raw);
-    let (first, last) = ((low / step).ceil() as i64, (high / step).floor() as i64);
-    (first..=last).map(|k| k as f64 * step).collect()
-}
-
-fn label(v: f64, (low, high): (f64, f64), scale: Scale) -> String {
-    // even steps share their digits with the largest, even ratios each have their own
-    let size = if scale == Scale::Log { v.abs() } else { low.abs().max(high.abs()) };
-    if v == 0.0 {
-        return "0".into();
-    }
-    if !(1e-3..1e5).contains(&size) {
-        let text = format!("{v:.2e}");
-        // 2.00e-4 is 2e-4
-        let (digits, power) = text.split_once('e').unwrap_or((&text, "0"));
-        let digits = digits.trim_end_matches('0').trim_end_matches('.');
-        return format!("{digits}e{power}").replace('-', "\u{2212}");
-    }
-    let text = format!("{v:.6}");
-    text.trim_end_matches('0').trim_end_matches('.').replace('-', "\u{2212}")
-}
-
-/// Text as it may stand in HTML and SVG.
-pub fn escape(text: &str) -> String {
-    let mut safe = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => safe.push_str("&amp;"),
-            '<' => safe.push_str("&lt;"),
-            '>' => safe.push_str("&gt;"),
-            '"' => safe.push_str("&quot;"),
-            '\'' => safe.push_str("&#39;"),
-            c => safe.push(c),
-        }
-    }
-    safe
-}
-
-/// A series thinned to the smallest and the largest value of each of many stretches, so that
-/// no peak is lost.
-pub fn thinned(points: &[(f64, f64)], stretches: usize) -> Vec<(f64, f64)> {
-    if points.len() <= 2 * stretches {
-        return points.to_vec();
-    }
-    let mut kept = vec![];
-    for piece in points.chunks(points.len().div_ceil(stretches)) {
-        let by = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-        let finite = || piece.iter().filter(|p| p.1.is_finite());
-        match (finite().min_by(by), finite().max_by(by)) {
-            (Some(&low), Some(&high)) if low.0 <= high.0 => kept.extend([low, high]),
-            (Some(&low), Some(&high)) => kept.extend([high, low]),
-            _ => kept.push((piece[0].0, f64::NAN)),
-        }
-    }
-    kept
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::figure::Role;
     use super::*;
 
     #[test]
-    fn an_axis_of_few_powers_of_ten_is_marked_between_them() {
-        let about = |range| ticks(range, Scale::Log, 5);
-        assert_eq!(about((0.025, 0.3)), [0.05, 0.1, 0.2]);
-        assert_eq!(about((0.5, 2e3)), [1.0, 10.0, 100.0, 1000.0]);
+    fn a_picture_keeps_to_its_view_and_to_what_is_switched_on() {
+        let line = |size: f64| (0..5000).map(|k| (f64::from(k), size * f64::from(k))).collect();
+        let figure = Figure::new("t", "y").view(100.0, 200.0);
+        let figure = figure.line(Role::Before, "model", line(1.0));
+        let figure = figure.line(Role::Law, "another", line(-1.0)).off();
+        let svg = figure.svg();
+        assert!(!svg.contains("another") && svg.contains(">model<"), "{svg}");
+        assert!(svg.contains(">150<") && !svg.contains(">1000<"), "{svg}");
+        assert!(svg.len() < 20_000, "{}", svg.len());
+    }
+
+    #[test]
+    fn names_stand_along_an_axis() {
         let figure = Figure::new("start", "").named(&["random".into()]);
-        assert!(figure.dots("", "", vec![(1.0, 2.0, 0.0)]).svg().contains(">random<"));
+        let svg = figure.dots(Role::Before, "", vec![(1.0, 2.0, 0.0)]).svg();
+        assert!(svg.contains(">random<"), "{svg}");
     }
 }

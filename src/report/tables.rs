@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::page::{Page, share};
+use super::page::{Cell, Page, share};
 use super::sentences;
 use crate::diagnose::{Finding, NotFound, Track};
 use crate::digits::number;
@@ -63,13 +63,13 @@ fn regime(page: &mut Page, finding: &Finding) {
         return;
     }
     page.heading("Where the error lives");
-    let rows: Vec<Vec<String>> = finding
+    let rows: Vec<Vec<Cell>> = finding
         .regime
         .iter()
         .map(|(name, regime)| {
             let end = |value: f64| number(value, Some(0.05 * (regime.to - regime.from)));
             let band = format!("{} to {} {}", end(regime.from), end(regime.to), regime.unit);
-            vec![name.clone(), band, share(regime.share)]
+            vec![name.as_str().into(), band.into(), share(regime.share)]
         })
         .collect();
     page.table(&["output", "the model's error lives in", "with"], &rows);
@@ -137,17 +137,17 @@ fn ranking(page: &mut Page, finding: &Finding) {
     page.heading("First look at all candidates");
     page.element("p", "note",
         "Share of the residual that each candidate explains to first order, before anything was fitted.");
-    let rows: Vec<Vec<String>> = finding
+    let rows: Vec<Vec<Cell>> = finding
         .ranking
         .iter()
         .take(15)
         .map(|r| {
             vec![
-                r.effect.clone(),
-                r.into.clone(),
-                r.of.clone().unwrap_or_default(),
+                r.effect.as_str().into(),
+                r.into.as_str().into(),
+                r.of.clone().unwrap_or_default().into(),
                 share(r.share),
-                format!("{:.1}", r.score),
+                format!("{:.1}", r.score).into(),
             ]
         })
         .collect();
@@ -170,11 +170,7 @@ fn not_found(page: &mut Page, finding: &Finding) {
         groups.entry(&entry.effect).or_default().push(entry);
     }
     for (effect, entries) in groups {
-        page.raw(&format!(
-            "<details><summary>{} ({})</summary>",
-            super::svg::escape(effect),
-            entries.len()
-        ));
+        page.open(&format!("{effect} ({})", entries.len()));
         let rows: Vec<Vec<String>> = entries
             .iter()
             .map(|e| {
@@ -191,7 +187,7 @@ fn not_found(page: &mut Page, finding: &Finding) {
             })
             .collect();
         page.table(&["into", "of", "#smallest seen", "#own"], &rows);
-        page.raw("</details>");
+        page.close();
     }
 }
 

@@ -2,17 +2,16 @@
 
 use std::path::Path;
 
+use super::figure::{Figure, Role, Scale};
+use super::overlay::{Overlay, with_unit};
 use super::page::Page;
-use super::svg::{Figure, Scale, thinned};
 use crate::data::Record;
 use crate::train::{Ended, Epoch, Fit, Run};
 
-/// Stretches that a drawn series is thinned to.
-const STRETCHES: usize = 900;
 /// Samples of the close-up.
 const CLOSE: usize = 300;
 /// Colours in turn.
-const CLASSES: [&str; 4] = ["after", "before", "law", "floor"];
+const ROLES: [Role; 4] = [Role::After, Role::Before, Role::Law, Role::Floor];
 
 /// A record with the baseline's and the trained model's simulation of it.
 #[derive(Debug, Clone, Copy)]
@@ -79,7 +78,7 @@ impl<'a> TrainingReport<'a> {
             self.signals(&mut page, shown);
         }
         self.table(&mut page);
-        page.html("Training")
+        page.titled("Training").html()
     }
 
     fn headline(&self) -> String {
@@ -102,7 +101,7 @@ impl<'a> TrainingReport<'a> {
         page.heading("Loss");
         let figure =
             Figure::new("epoch", "mean loss of the steps").scales(Scale::Linear, Scale::Log);
-        page.raw(&figure.line("after", "", thinned(&losses, STRETCHES)).svg());
+        page.figure(figure.titled("Loss").line(Role::After, "loss", losses));
         if history.iter().all(|e| e.score.is_none()) {
             return;
         }
@@ -111,51 +110,40 @@ impl<'a> TrainingReport<'a> {
             let of = |value: &dyn Fn(&Epoch) -> Option<f64>| -> Vec<(f64, f64)> {
                 history.iter().filter_map(|e| Some((e.epoch as f64, value(e)?))).collect()
             };
-            let mut figure = Figure::new("epoch", &format!("RMSE{}", bracketed(unit)))
-                .scales(Scale::Linear, Scale::Log);
+            let mut figure =
+                Figure::new("epoch", &with_unit("RMSE", unit)).scales(Scale::Linear, Scale::Log);
             for (i, length) in self.lengths.iter().enumerate() {
                 let points = of(&|e| Some(*e.score.as_ref()?.ahead.get(i)?.get(o)?));
-                let class = CLASSES[i % CLASSES.len()];
-                figure =
-                    figure.line(class, &format!("{length} steps"), thinned(&points, STRETCHES));
+                let role = ROLES[i % ROLES.len()];
+                figure = figure.line(role, &format!("{length} steps"), points);
             }
             let points = of(&|e| e.score.as_ref()?.simulation.get(o).copied());
-            figure = figure.line("measured", "simulation", thinned(&points, STRETCHES));
-            page.raw(&figure.svg());
+            figure = figure.line(Role::Measured, "simulation", points);
+            page.figure(figure.linked("epochs"));
         }
     }
 
     fn signals(&self, page: &mut Page, shown: Shown<'_>) {
-        let (dt, start) = (shown.record.sampling_time, shown.run.starts.first().copied());
+        let start = shown.run.starts.first().copied().unwrap_or(0);
         for (o, (name, unit)) in self.outputs.iter().enumerate() {
-            let (Some(simulated), Some(baseline)) =
-                (shown.run.outputs.get(o), shown.baseline.get(o))
+            let (Some(simulated), Some(baseline), Some(measured)) =
+                (shown.run.outputs.get(o), shown.baseline.get(o), shown.record.outputs.get(o))
             else {
                 continue;
             };
-            let Some(measured) = shown.record.outputs.get(o) else { continue };
-            let timed = |values: &mut dyn Iterator<Item = (usize, f64)>| -> Vec<(f64, f64)> {
-                values.map(|(k, v)| (k as f64 * dt, v)).collect()
-            };
-            let from = start.unwrap_or(0);
-            let close = |values: &[f64]| {
-                let some = values.iter().copied().enumerate().skip(from).take(CLOSE);
-                timed(&mut some.into_iter())
+            let overlay = Overlay {
+                output: (name, unit),
+                step: shown.record.sampling_time,
+                measured: &measured.values,
+                simulated: vec![
+                    (Role::Before, "baseline", baseline),
+                    (Role::After, "trained", simulated),
+                ],
+                borders: vec![],
             };
             page.heading(&format!("{name}: measured and simulated"));
-            let figure = Figure::new("time [s]", &format!("{name}{}", bracketed(unit)))
-                .line("measured", "measured", close(&measured.values))
-                .line("before", "baseline", close(baseline))
-                .line("after", "trained", close(simulated));
-            page.raw(&figure.svg());
-            let residual = |values: &[f64]| {
-                let pairs = values.iter().zip(&measured.values).map(|(a, b)| a - b);
-                thinned(&timed(&mut pairs.enumerate()), STRETCHES)
-            };
-            let figure = Figure::new("time [s]", &format!("error of {name}{}", bracketed(unit)))
-                .line("before", "baseline", residual(baseline))
-                .line("after", "trained", residual(simulated));
-            page.raw(&figure.svg());
+            page.figure(overlay.signal(start, CLOSE));
+            page.figure(overlay.left());
         }
     }
 
@@ -164,9 +152,9 @@ impl<'a> TrainingReport<'a> {
         let mut header = vec!["#epoch".to_string(), "#loss".into(), "#rate".into()];
         for (name, unit) in &self.outputs {
             for length in &self.lengths {
-                header.push(format!("#{name}, {length} steps{}", bracketed(unit)));
+                header.push(with_unit(&format!("#{name}, {length} steps"), unit));
             }
-            header.push(format!("#{name}, simulation{}", bracketed(unit)));
+            header.push(with_unit(&format!("#{name}, simulation"), unit));
         }
         let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.5e}"));
         let row = |epoch: &Epoch| {
@@ -191,8 +179,4 @@ impl<'a> TrainingReport<'a> {
         let rows: Vec<Vec<String>> = kept.map(row).collect();
         page.table(&header.iter().map(|h| &h[..]).collect::<Vec<_>>(), &rows);
     }
-}
-
-fn bracketed(unit: &str) -> String {
-    if unit.is_empty() { String::new() } else { format!(" [{unit}]") }
 }

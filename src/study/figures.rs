@@ -1,10 +1,10 @@
 //! A study as one page: error over epochs, box plot, error against noise.
 
 use super::result::{Quartiles, StudyResult};
-use crate::report::{Figure, Page, Scale};
+use crate::report::{Figure, Page, Role, Scale};
 
 /// Colours of the starts, in turn.
-const CLASSES: [&str; 5] = ["measured", "before", "after", "floor", "law"];
+const ROLES: [Role; 5] = [Role::Measured, Role::Before, Role::After, Role::Floor, Role::Law];
 
 /// The report of a study: one self-contained HTML page.
 #[derive(Debug, Clone, Copy)]
@@ -12,8 +12,8 @@ pub struct StudyReport<'a> {
     of: &'a StudyResult,
 }
 
-fn class(start: usize) -> &'static str {
-    CLASSES[start % CLASSES.len()]
+fn role(start: usize) -> Role {
+    ROLES[start % ROLES.len()]
 }
 
 impl<'a> StudyReport<'a> {
@@ -32,7 +32,7 @@ impl<'a> StudyReport<'a> {
         self.boxes(&mut page);
         self.noise(&mut page);
         self.table(&mut page);
-        page.html("Monte Carlo study")
+        page.titled("Monte Carlo study").html()
     }
 
     fn unit(&self) -> String {
@@ -50,9 +50,9 @@ impl<'a> StudyReport<'a> {
                 let at = |e: &usize| *e as f64;
                 let band = course.iter().map(|(e, q)| (at(e), q.least, q.greatest)).collect();
                 let line = course.iter().map(|(e, q)| (at(e), q.median)).collect();
-                figure = figure.band(class(number), "", band).line(class(number), start, line);
+                figure = figure.band(role(number), "", band).line(role(number), start, line);
             }
-            page.raw(&figure.svg());
+            page.figure(figure);
             page.element(
                 "p",
                 "note",
@@ -74,18 +74,18 @@ impl<'a> StudyReport<'a> {
                 let across = |y: f64, half: f64| vec![(x - half, y), (x + half, y)];
                 figure = figure
                     .band(
-                        class(number),
+                        role(number),
                         "",
                         vec![(x - half, q.first, q.third), (x + half, q.first, q.third)],
                     )
-                    .line(class(number), start, across(q.median, half))
-                    .line(class(number), "", across(q.least, 0.5 * half))
-                    .line(class(number), "", across(q.greatest, 0.5 * half))
-                    .line(class(number), "", vec![(x, q.least), (x, q.first)])
-                    .line(class(number), "", vec![(x, q.third), (x, q.greatest)])
-                    .dots(class(number), "", all.iter().map(|&y| (x, y, 0.0)).collect());
+                    .line(role(number), start, across(q.median, half))
+                    .line(role(number), "", across(q.least, 0.5 * half))
+                    .line(role(number), "", across(q.greatest, 0.5 * half))
+                    .line(role(number), "", vec![(x, q.least), (x, q.first)])
+                    .line(role(number), "", vec![(x, q.third), (x, q.greatest)])
+                    .dots(role(number), "", all.iter().map(|&y| (x, y, 0.0)).collect());
             }
-            page.raw(&figure.svg());
+            page.figure(figure);
             page.element(
                 "p",
                 "note",
@@ -108,9 +108,9 @@ impl<'a> StudyReport<'a> {
                 .collect();
             let band = points.iter().map(|(x, q)| (*x, q.least, q.greatest)).collect();
             let line = points.iter().map(|(x, q)| (*x, q.median)).collect();
-            figure = figure.band(class(number), "", band).line(class(number), start, line);
+            figure = figure.band(role(number), "", band).line(role(number), start, line);
         }
-        page.raw(&figure.svg());
+        page.figure(figure);
         page.element(
             "p",
             "note",

@@ -78,6 +78,13 @@ impl<'a> Planner<'a> {
         self
     }
 
+    /// Looks at these effects only; none given: at all.
+    #[must_use]
+    pub fn only(mut self, effects: &[String]) -> Self {
+        self.allowed.only = effects.to_vec();
+        self
+    }
+
     /// Looks at records of one machine.
     ///
     /// # Errors

@@ -7,10 +7,10 @@ use super::{ExamResult, Kind, Tally};
 use crate::StudyError;
 use crate::file::write_text;
 use crate::job::write;
-use crate::report::{Figure, Page, Scale};
+use crate::report::{Figure, Page, Role, Scale};
 
 /// Colours of the machines, in turn.
-const CLASSES: [&str; 5] = ["measured", "before", "after", "floor", "law"];
+const ROLES: [Role; 5] = [Role::Measured, Role::Before, Role::After, Role::Floor, Role::Law];
 
 fn asked(kind: Kind) -> &'static str {
     match kind {
@@ -153,7 +153,7 @@ impl ExamResult {
         };
         let rows: Vec<_> = self.by_system().into_iter().flat_map(of_machine).collect();
         page.table(&header, &rows);
-        page.html("Exam of the diagnosis")
+        page.titled("Exam of the diagnosis").html()
     }
 
     /// Found against size, a line a machine.
@@ -167,11 +167,11 @@ impl ExamResult {
             line.sort_by(|a, b| a.0.total_cmp(&b.0));
             line.dedup_by_key(|p| p.0);
             drawn |= line.len() > 1;
-            figure = figure.line(CLASSES[number % CLASSES.len()], &name, line);
+            figure = figure.line(ROLES[number % ROLES.len()], &name, line);
         }
         if drawn {
             page.heading("Power");
-            page.raw(&figure.svg());
+            page.figure(figure);
         }
     }
 
