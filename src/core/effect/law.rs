@@ -253,6 +253,7 @@ fn set_field(fields: &mut serde_json::Value, name: &str, value: f64) {
 }
 
 per_lanes! {
+    up to avx2,
     /// Runs the law pack by pack.
     fn run[E: Effect,; R](effect: &E, block: &EffectBlock<'_, R>, w: &mut [R], rates: &mut [R]) {
         let packs = block.packs.max(1);

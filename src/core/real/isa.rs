@@ -113,6 +113,34 @@ pub unsafe fn recast<A, B>(from: A) -> B {
 #[doc(hidden)]
 #[macro_export]
 macro_rules! per_lanes {
+    // without AVX-512, where its wider registers gain nothing
+    (up to avx2, $(#[$meta:meta])* $vis:vis fn $name:ident [$($generic:ident : $bound:path,)* ; $number:ident] ($($arg:ident : $ty:ty),* $(,)?) $body:block) => {
+        $(#[$meta])*
+        $vis fn $name<$($generic: $bound,)* $number: $crate::real::InRegisters>($($arg: $ty),*) {
+            #[inline(always)]
+            fn body<$($generic: $bound,)* $number: $crate::real::Real>($($arg: $ty),*) $body
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx2,fma,bmi1,bmi2")]
+                fn avx2<$($generic: $bound,)* $number: $crate::real::InRegisters>($($arg: $ty),*) {
+                    // SAFETY: registers of this processor with the layout of the lanes.
+                    unsafe { body::<$($generic,)* $number::Avx2>($($crate::real::recast($arg)),*) }
+                }
+                match $crate::real::Isa::detect() {
+                    // SAFETY: the same numbers in a type of the same layout.
+                    $crate::real::Isa::Baseline => unsafe {
+                        body::<$($generic,)* $number::Plain>($($crate::real::recast($arg)),*)
+                    },
+                    // SAFETY: `detect` saw these features on this processor.
+                    _ => unsafe { avx2::<$($generic,)* $number>($($arg),*) },
+                }
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            {
+                body::<$($generic,)* $number>($($arg),*)
+            }
+        }
+    };
     ($(#[$meta:meta])* $vis:vis fn $name:ident [$($generic:ident : $bound:path,)* ; $number:ident] ($($arg:ident : $ty:ty),* $(,)?) $(-> $ret:ty)? $body:block) => {
         $(#[$meta])*
         $vis fn $name<$($generic: $bound,)* $number: $crate::real::InRegisters>($($arg: $ty),*) $(-> $ret)? {
@@ -135,7 +163,10 @@ macro_rules! per_lanes {
                     $crate::real::Isa::Avx512 => unsafe { avx512::<$($generic,)* $number>($($arg),*) },
                     // SAFETY: as above.
                     $crate::real::Isa::Avx2 => unsafe { avx2::<$($generic,)* $number>($($arg),*) },
-                    $crate::real::Isa::Baseline => body::<$($generic,)* $number>($($arg),*),
+                    // SAFETY: the same numbers in a type of the same layout.
+                    $crate::real::Isa::Baseline => unsafe {
+                        body::<$($generic,)* $number::Plain>($($crate::real::recast($arg)),*)
+                    },
                 }
             }
             #[cfg(not(target_arch = "x86_64"))]

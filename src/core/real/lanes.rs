@@ -196,6 +196,8 @@ pub trait InRegisters: Real {
     type Avx512: Real;
     /// The same numbers in AVX registers.
     type Avx2: Real;
+    /// The same numbers for processors that have neither.
+    type Plain: Real;
 }
 
 macro_rules! in_registers {
@@ -205,6 +207,10 @@ macro_rules! in_registers {
             type Avx512 = super::x86::$avx512;
             #[cfg(target_arch = "x86_64")]
             type Avx2 = super::x86::$avx2;
+            #[cfg(target_arch = "x86_64")]
+            type Plain = super::outlined::Outlined<$t>;
+            #[cfg(not(target_arch = "x86_64"))]
+            type Plain = Self;
             #[cfg(not(target_arch = "x86_64"))]
             type Avx512 = Self;
             #[cfg(not(target_arch = "x86_64"))]
@@ -219,4 +225,5 @@ in_registers!(F32x16, F32x16Avx512, F32x16Avx2);
 impl<R: InRegisters, const D: usize> InRegisters for super::Dual<R, D> {
     type Avx512 = super::Dual<R::Avx512, D>;
     type Avx2 = super::Dual<R::Avx2, D>;
+    type Plain = super::Dual<R::Plain, D>;
 }

@@ -21,6 +21,8 @@ pub mod elementary;
 pub mod fused;
 mod isa;
 mod lanes;
+#[cfg(target_arch = "x86_64")]
+mod outlined;
 mod rules;
 mod scalar;
 #[cfg(target_arch = "x86_64")]

@@ -15,7 +15,7 @@ use super::{Real, elementary};
 /// SAFETY of all intrinsics here: these types are only made by `per_lanes!`, inside
 /// functions that run after the processor's features have been seen.
 macro_rules! registers {
-    ($(#[$meta:meta])* $name:ident, $t:ty, $lanes:literal, $reg:ty, $count:literal,
+    ($(#[$meta:meta])* $name:ident, $features:literal, $t:ty, $lanes:literal, $reg:ty, $count:literal,
      $set:ident, $add:ident, $sub:ident, $mul:ident, $div:ident, $sqrt:ident,
      $fma:ident, $fms:ident, $fnma:ident,
      |$a:ident, $b:ident| less: $less:expr, nan: $nan:expr,
@@ -126,7 +126,7 @@ macro_rules! registers {
         registers!(@fused $name, $count, fma $fma fms $fms fnma $fnma);
 
         impl Real for $name {
-            registers!(@elementary sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, ln);
+            registers!(@elementary $name, $features, sin cos tan asin acos atan sinh cosh tanh exp ln);
 
             #[inline(always)]
             fn constant(value: f64) -> Self {
@@ -134,11 +134,23 @@ macro_rules! registers {
             }
             #[inline(always)]
             fn atan2(self, x: Self) -> Self {
-                Self::narrow(elementary::atan2(self.wide(), x.wide()))
+                #[target_feature(enable = $features)]
+                #[inline(never)]
+                fn called(y: $name, x: $name) -> $name {
+                    $name::narrow(elementary::atan2(y.wide(), x.wide()))
+                }
+                // SAFETY: of all intrinsics here, above.
+                unsafe { called(self, x) }
             }
             #[inline(always)]
             fn powf(self, exponent: Self) -> Self {
-                Self::narrow(elementary::pow(self.wide(), exponent.wide()))
+                #[target_feature(enable = $features)]
+                #[inline(never)]
+                fn called(x: $name, exponent: $name) -> $name {
+                    $name::narrow(elementary::pow(x.wide(), exponent.wide()))
+                }
+                // SAFETY: of all intrinsics here, above.
+                unsafe { called(self, exponent) }
             }
             #[inline(always)]
             fn sqrt(mut self) -> Self {
@@ -211,17 +223,24 @@ macro_rules! registers {
             }
         )*}
     };
-    (@elementary $($function:ident),*) => {$(
+    // long functions are compiled once and called: in line they would make up most of a kernel
+    (@elementary $name:ident, $features:literal, $($function:ident)*) => {$(
         #[inline(always)]
         fn $function(self) -> Self {
-            Self::narrow(elementary::$function(self.wide()))
+            #[target_feature(enable = $features)]
+            #[inline(never)]
+            fn called(x: $name) -> $name {
+                $name::narrow(elementary::$function(x.wide()))
+            }
+            // SAFETY: of all intrinsics here, above.
+            unsafe { called(self) }
         }
     )*};
 }
 
 registers! {
     /// Eight `f64` in one AVX-512 register.
-    F64x8Avx512, f64, 8, __m512d, 1,
+    F64x8Avx512, "avx2,fma,bmi1,bmi2,avx512f,avx512dq,avx512vl", f64, 8, __m512d, 1,
     _mm512_set1_pd, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_div_pd, _mm512_sqrt_pd,
     _mm512_fmadd_pd, _mm512_fmsub_pd, _mm512_fnmadd_pd,
     |a, b| less: _mm512_cmp_pd_mask::<_CMP_LT_OQ>(a, b), nan: _mm512_cmp_pd_mask::<_CMP_UNORD_Q>(a, a),
@@ -231,7 +250,7 @@ registers! {
 
 registers! {
     /// Sixteen `f32` in one AVX-512 register.
-    F32x16Avx512, f32, 16, __m512, 1,
+    F32x16Avx512, "avx2,fma,bmi1,bmi2,avx512f,avx512dq,avx512vl", f32, 16, __m512, 1,
     _mm512_set1_ps, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps, _mm512_div_ps, _mm512_sqrt_ps,
     _mm512_fmadd_ps, _mm512_fmsub_ps, _mm512_fnmadd_ps,
     |a, b| less: _mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b), nan: _mm512_cmp_ps_mask::<_CMP_UNORD_Q>(a, a),
@@ -241,7 +260,7 @@ registers! {
 
 registers! {
     /// Eight `f64` in two AVX registers.
-    F64x8Avx2, f64, 8, __m256d, 2,
+    F64x8Avx2, "avx2,fma,bmi1,bmi2", f64, 8, __m256d, 2,
     _mm256_set1_pd, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd, _mm256_sqrt_pd,
     _mm256_fmadd_pd, _mm256_fmsub_pd, _mm256_fnmadd_pd,
     |a, b| less: _mm256_cmp_pd::<_CMP_LT_OQ>(a, b), nan: _mm256_cmp_pd::<_CMP_UNORD_Q>(a, a),
@@ -251,7 +270,7 @@ registers! {
 
 registers! {
     /// Sixteen `f32` in two AVX registers.
-    F32x16Avx2, f32, 16, __m256, 2,
+    F32x16Avx2, "avx2,fma,bmi1,bmi2", f32, 16, __m256, 2,
     _mm256_set1_ps, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps, _mm256_div_ps, _mm256_sqrt_ps,
     _mm256_fmadd_ps, _mm256_fmsub_ps, _mm256_fnmadd_ps,
     |a, b| less: _mm256_cmp_ps::<_CMP_LT_OQ>(a, b), nan: _mm256_cmp_ps::<_CMP_UNORD_Q>(a, a),

@@ -46,9 +46,11 @@ pub(super) fn exp_of_sum(high: f64, low: f64) -> f64 {
 /// e to the power of every element.
 #[inline(always)]
 pub fn exp<const N: usize>(x: [f64; N]) -> [f64; N] {
-    each(x, |x| {
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
         let x = if x > 720.0 { 720.0 } else { x };
         let x = if x < -760.0 { -760.0 } else { x };
         exp_of_sum(x, 0.0)
-    })
+    }
+    each(x, one)
 }

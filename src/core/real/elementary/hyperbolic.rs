@@ -51,30 +51,36 @@ fn up_to(limit: f64, x: f64) -> f64 {
 /// The hyperbolic sine of every element.
 #[inline(always)]
 pub fn sinh<const N: usize>(x: [f64; N]) -> [f64; N] {
-    each(x, |x| {
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
         let pair = sinh_and_cosh(up_to(720.0, x.abs()));
         ((pair.sinh.0 + pair.sinh.1) * pair.scale).copysign(x)
-    })
+    }
+    each(x, one)
 }
 
 /// The hyperbolic cosine of every element.
 #[inline(always)]
 pub fn cosh<const N: usize>(x: [f64; N]) -> [f64; N] {
-    each(x, |x| {
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
         let pair = sinh_and_cosh(up_to(720.0, x.abs()));
         (pair.cosh.0 + pair.cosh.1) * pair.scale
-    })
+    }
+    each(x, one)
 }
 
 /// The hyperbolic tangent of every element.
 #[inline(always)]
 pub fn tanh<const N: usize>(x: [f64; N]) -> [f64; N] {
-    each(x, |x| {
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
         // beyond 20 it is 1 to the last bit
         let pair = sinh_and_cosh(up_to(22.0, x.abs()));
         let (sinh, sinh_low) = sum(pair.sinh.0, pair.sinh.1);
         let (cosh, cosh_low) = sum(pair.cosh.0, pair.cosh.1);
         let (q, rest) = quotient((sinh, sinh_low), (cosh, cosh_low));
         (q + rest).copysign(x)
-    })
+    }
+    each(x, one)
 }

@@ -71,19 +71,22 @@ fn asin_of_reduced(x: f64) -> (f64, f64, bool) {
 /// The inverse sine of every element, in radians; not a number beyond -1 to 1.
 #[inline(always)]
 pub fn asin<const N: usize>(x: [f64; N]) -> [f64; N] {
-    each(x, |x| {
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
         let (high, low, beyond) = asin_of_reduced(x);
         let (total, lost) = sum(FRAC_PI_2, -2.0 * high);
         let far = total + (lost + (FRAC_PI_2_LOW - 2.0 * low));
         let y = if beyond { far } else { high + low };
         y.copysign(x)
-    })
+    }
+    each(x, one)
 }
 
 /// The inverse cosine of every element, in radians; not a number beyond -1 to 1.
 #[inline(always)]
 pub fn acos<const N: usize>(x: [f64; N]) -> [f64; N] {
-    each(x, |x| {
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
         let (high, low, beyond) = asin_of_reduced(x);
         // base - factor asin(u)
         let negative = x < 0.0;
@@ -95,7 +98,8 @@ pub fn acos<const N: usize>(x: [f64; N]) -> [f64; N] {
         let base_low = if beyond { far_low } else { FRAC_PI_2_LOW };
         let (total, lost) = sum(base, -factor * high);
         total + (lost + (base_low - factor * low))
-    })
+    }
+    each(x, one)
 }
 
 /// The angle of the point (`x`, `y`) for y >= 0, both zero or from 2^-500 to 2^500 in
@@ -137,12 +141,14 @@ fn angle(y: f64, x: f64) -> f64 {
 /// The inverse tangent of every element, in radians.
 #[inline(always)]
 pub fn atan<const N: usize>(x: [f64; N]) -> [f64; N] {
-    each(x, |x| {
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
         let size = x.abs();
         // beyond 2^60 it is pi/2 to the last bit
         let size = if size > 1152921504606846976.0 { 1152921504606846976.0 } else { size };
         angle(size, 1.0).copysign(x)
-    })
+    }
+    each(x, one)
 }
 
 /// Whether [`angle`] holds for |y| and `x`.
@@ -165,7 +171,11 @@ const fn power(exponent: i64) -> f64 {
 /// Zeros and infinities follow IEEE 754: the sign of a zero `y` tells the side.
 #[inline(always)]
 pub fn atan2<const N: usize>(y: [f64; N], x: [f64; N]) -> [f64; N] {
-    let mut result = each_pair(y, x, |y, x| angle(y.abs(), x).copysign(y));
+    #[inline(always)]
+    fn one(y: f64, x: f64) -> f64 {
+        angle(y.abs(), x).copysign(y)
+    }
+    let mut result = each_pair(y, x, one);
     let mut all = true;
     for i in 0..N {
         all &= ordinary(y[i], x[i]);

@@ -34,7 +34,8 @@ pub(super) fn exponent_and_mantissa(x: f64) -> (f64, f64) {
 /// The natural logarithm of every element.
 #[inline(always)]
 pub fn ln<const N: usize>(x: [f64; N]) -> [f64; N] {
-    each(x, |x| {
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
         let (e, m) = exponent_and_mantissa(x);
         let f = m - 1.0;
         let s = f / (f + 2.0);
@@ -48,5 +49,6 @@ pub fn ln<const N: usize>(x: [f64; N]) -> [f64; N] {
         let y = if x < f64::INFINITY { y } else { x };
         let y = if x == 0.0 { f64::NEG_INFINITY } else { y };
         if x < 0.0 { f64::NAN } else { y }
-    })
+    }
+    each(x, one)
 }

@@ -137,19 +137,31 @@ fn zero_kept(x: f64, y: f64) -> f64 {
 #[inline(always)]
 pub fn sin<const N: usize>(x: [f64; N]) -> [f64; N] {
     // the reduction loses the sign of a zero
-    let y = each(x, |x| zero_kept(x, sin_of(reduce(x), 0)));
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
+        zero_kept(x, sin_of(reduce(x), 0))
+    }
+    let y = each(x, one);
     mended(x, y, |angle| sin_of(angle, 0))
 }
 
 /// The cosine of every element, in radians.
 #[inline(always)]
 pub fn cos<const N: usize>(x: [f64; N]) -> [f64; N] {
-    mended(x, each(x, |x| sin_of(reduce(x), 1)), |angle| sin_of(angle, 1))
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
+        sin_of(reduce(x), 1)
+    }
+    mended(x, each(x, one), |angle| sin_of(angle, 1))
 }
 
 /// The tangent of every element, in radians.
 #[inline(always)]
 pub fn tan<const N: usize>(x: [f64; N]) -> [f64; N] {
-    let y = each(x, |x| zero_kept(x, tan_of(reduce(x))));
+    #[inline(always)]
+    fn one(x: f64) -> f64 {
+        zero_kept(x, tan_of(reduce(x)))
+    }
+    let y = each(x, one);
     mended(x, y, tan_of)
 }
