@@ -4,6 +4,7 @@
 
 mod data_faults;
 mod exam;
+mod first_use;
 mod hard_plants;
 mod hidden_effect;
 mod network;

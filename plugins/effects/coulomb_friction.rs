@@ -31,8 +31,8 @@ impl Effect for CoulombFriction {
         .rank(2)
     }
 
-    fn title(&self, _: &Named) -> String {
-        "Dry friction".into()
+    fn title(&self, named: &Named) -> String {
+        if named.bare { "A jump at zero" } else { "Dry friction" }.into()
     }
 
     #[inline(always)]

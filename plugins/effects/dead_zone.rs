@@ -31,7 +31,12 @@ impl Effect for DeadZone {
     }
 
     fn title(&self, named: &Named) -> String {
-        if named.own_path { "A dead zone" } else { "Clearance" }.into()
+        match (named.own_path, named.bare) {
+            (true, _) => "A dead zone",
+            (false, true) => "A law that is flat around zero",
+            (false, false) => "Clearance",
+        }
+        .into()
     }
 
     #[inline(always)]

@@ -35,8 +35,8 @@ impl Effect for ExtraMode {
         .rank(4)
     }
 
-    fn title(&self, _: &Named) -> String {
-        "A hidden vibration mode".into()
+    fn title(&self, named: &Named) -> String {
+        if named.bare { "A hidden resonance" } else { "A hidden vibration mode" }.into()
     }
 
     /// States: displacement relative to the place where it sits, and own velocity. Shaken

@@ -21,8 +21,8 @@ impl Effect for Stop {
         .rank(4)
     }
 
-    fn title(&self, _: &Named) -> String {
-        "End stops".into()
+    fn title(&self, named: &Named) -> String {
+        if named.bare { "A law beyond two limits" } else { "End stops" }.into()
     }
 
     #[inline(always)]

@@ -37,8 +37,9 @@ impl Effect for StribeckFriction {
         .rank(4)
     }
 
-    fn title(&self, _: &Named) -> String {
-        "Dry friction with a Stribeck bump".into()
+    fn title(&self, named: &Named) -> String {
+        if named.bare { "A jump at zero with a bump" } else { "Dry friction with a Stribeck bump" }
+            .into()
     }
 
     #[inline(always)]

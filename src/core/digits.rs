@@ -12,16 +12,28 @@
 /// assert_eq!(number(9.81, None), "9.810");
 /// ```
 pub fn number(value: f64, error: Option<f64>) -> String {
-    let digits = match error {
-        Some(e) if e > 0.0 && e.is_finite() => 1 - e.log10().floor() as i32,
-        _ if value == 0.0 => 1,
-        _ => 3 - value.abs().log10().floor() as i32,
-    };
+    let digits = decimals(value, error);
     if value != 0.0 && (value.abs() >= 1e6 || value.abs() < 1e-4) {
         let significant = (digits + value.abs().log10().floor() as i32).clamp(0, 8) as usize;
         return format!("{value:.significant$e}");
     }
-    format!("{value:.*}", digits.clamp(0, 12) as usize)
+    fixed(value, digits, error.is_some())
+}
+
+/// Decimals that an error allows; so many that four digits are shown where there is none.
+fn decimals(value: f64, error: Option<f64>) -> i32 {
+    match error {
+        Some(e) if e > 0.0 && e.is_finite() => 1 - e.log10().floor() as i32,
+        _ if value == 0.0 => 1,
+        _ => 3 - value.abs().log10().floor() as i32,
+    }
+}
+
+/// So many decimals; fewer than none are rounded to tens and hundreds where an error asks for it.
+fn fixed(value: f64, decimals: i32, is_rounded: bool) -> String {
+    let scale = 10f64.powi(-decimals.min(0));
+    let value = if is_rounded && decimals < 0 { (value / scale).round() * scale } else { value };
+    format!("{value:.*}", decimals.clamp(0, 12) as usize)
 }
 
 /// A number with its unit, four significant digits.
@@ -55,7 +67,13 @@ pub fn interval(value: f64, std_error: Option<f64>, unit: &str) -> String {
     match std_error {
         Some(error) if error.is_finite() && error > 0.0 => {
             let two = 2.0 * error;
-            format!("{} +- {}{unit}", number(value, Some(two)), number(two, Some(two)))
+            let (text, digits) = (number(value, Some(two)), decimals(value, Some(two)));
+            // both in one notation, so that they can be compared
+            let error = match text.contains('e') || digits > 9 {
+                true => number(two, Some(two)),
+                false => fixed(two, digits, true),
+            };
+            format!("{text} +- {error}{unit}")
         }
         Some(_) => format!("{}{unit}", number(value, None)),
         None => format!("about {}{unit}", rough(value)),
@@ -71,7 +89,7 @@ pub fn interval(value: f64, std_error: Option<f64>, unit: &str) -> String {
 /// assert_eq!(rough(0.012_34), "0.012");
 /// ```
 pub fn rough(value: f64) -> String {
-    number(value, Some(0.1 * value.abs()))
+    number(value, Some(value.abs()))
 }
 
 /// A share in per cent; what rounds to none or all of it is said with a digit more.
@@ -102,6 +120,9 @@ mod tests {
         assert_eq!(interval(-0.12, Some(0.003), "N m"), "-0.1200 +- 0.0060 N m");
         assert_eq!(interval(988.3, Some(4.0), "N m"), "988.3 +- 8.0 N m");
         assert_eq!(interval(181.0, Some(100.0), "N m"), "180 +- 200 N m");
+        assert_eq!(interval(0.03, Some(7.5e-6), ""), "0.030000 +- 0.000015");
+        assert_eq!(interval(3e-7, Some(1e-8), ""), "3.00e-7 +- 2.0e-8");
+        assert_eq!(number(12345.0, None), "12345");
         assert_eq!(number(0.1, None), "0.1000");
         assert_eq!(number(1.234e-7, Some(1e-9)), "1.234e-7");
         assert_eq!(rough(628.4), "630");

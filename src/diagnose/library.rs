@@ -224,11 +224,21 @@ impl Builder<'_, '_> {
                 probe,
                 push,
                 stiffness: if card.needs == Needs::Velocity { push.abs() } else { 0.0 },
-                named: Named { quantity: self.quantity(source), own_path: spot.own_path },
+                named: Named {
+                    bare: self.is_bare(spot.source),
+                    own_path: spot.own_path,
+                    quantity: self.quantity(source),
+                },
                 units: (target_signal.unit.clone(), source_signal.unit.clone()),
                 twins: twins.clone(),
             });
         }
+    }
+
+    /// Whether nothing says what a source is.
+    fn is_bare(&self, source: Option<usize>) -> bool {
+        let unit = |source: usize| &self.problem.base.sources.entries[source].0.unit;
+        source.is_some_and(|source| unit(source).is_empty() && self.quantity(source).is_none())
     }
 
     /// Quantity of a source: as declared, or velocity where it is found to be one.

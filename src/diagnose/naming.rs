@@ -29,7 +29,7 @@ impl Candidate {
             first: first.map(|&i| self.card.knobs[i].name.to_string()),
             site: self.site(),
             is_constant: self.card.needs == Needs::Nothing && self.card.mechanism == Mechanism::Law,
-            is_friction: self.card.properties.is_friction,
+            is_friction: self.card.properties.is_friction && !self.named.bare,
             nominal,
             units: self.units.clone(),
             ..Wording::default()

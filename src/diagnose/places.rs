@@ -199,7 +199,7 @@ impl Builder<'_, '_> {
             let first = self.found.len();
             self.push(name, shape, card, spot, push, rate, twins(Some(source)));
             // a law of either sign that has words for both needs to know which is which
-            let named = Named { quantity: self.quantity(source), own_path: false };
+            let named = Named { quantity: self.quantity(source), ..Named::default() };
             if push == 0.0 && shape.senses(&named).is_some() {
                 let push = sign_of(source).unwrap_or(0.0);
                 self.found[first..].iter_mut().for_each(|cause| cause.push = push);

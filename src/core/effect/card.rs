@@ -270,6 +270,9 @@ pub struct Named {
     pub quantity: Option<Quantity>,
     /// Whether the effect acts on its own path (an actuator, a sensor).
     pub own_path: bool,
+    /// Whether nothing says what the coordinate is: it has no unit and no quantity, as a state of a
+    /// model made from records. Words of physics would not be true of it.
+    pub bare: bool,
 }
 
 impl Named {

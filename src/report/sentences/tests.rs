@@ -105,7 +105,7 @@ fn a_wave_has_amplitude_order_and_phase() {
     let text = super::cause(&wave(0.0, 0.05, 6.0));
     assert!(text.contains("amplitude 0.05000") && text.contains("+ 1.5708)"), "{text}");
     assert!(super::cause(&wave(0.08, 0.0, 1.0)).contains("as the weight of an arm is"));
-    let mut hum = wave(0.05, 0.0, 314.159);
+    let mut hum = wave(0.05, 0.0, 314.159_265);
     hum.of = Some("time".into());
     assert!(super::cause(&hum).contains("50.000000 +- 0.000032 Hz"), "{}", super::cause(&hum));
 }
@@ -209,7 +209,7 @@ fn what_is_left_and_what_was_supposed() {
         of(Some(1.03), true),
         "What is left of y is 1.0 times the noise, and white: a sample says nothing of the next."
     );
-    assert!(of(Some(32.5), false).contains("33 times the noise, and coloured (score 826)"));
+    assert!(of(Some(32.7), false).contains("33 times the noise, and coloured (score 826)"));
     assert!(of(None, false).contains("the noise is not known"));
     let facts = RecordFacts { records: 1, samples: 400, sampling_time: 0.1, test_samples: None };
     assert!(record(&facts).starts_with("400 samples of one record, 0.1000 s apart; "));
