@@ -1,8 +1,8 @@
 //! lacuna: what a model's simulation gets wrong, by name.
 
 pub use lacuna_core::{
-    data, digits, effect, evaluate, fault, file, model, optimise, prelude, real, register, system,
-    watch,
+    data, digits, effect, evaluate, fault, file, look, model, optimise, prelude, real, register,
+    system, watch,
 };
 pub use lacuna_diagnose as diagnose;
 pub use lacuna_estimate as estimate;

@@ -3,6 +3,7 @@
 mod columns;
 mod estimate;
 mod look;
+mod new;
 mod report;
 mod study;
 
@@ -13,6 +14,7 @@ use clap::{Args as Arguments, Parser, Subcommand};
 pub use columns::Columns;
 pub use estimate::Estimate;
 pub use look::Look;
+pub use new::New;
 pub use report::Report;
 pub use study::{Study, StudyVerb};
 
@@ -20,6 +22,16 @@ pub use study::{Study, StudyVerb};
 /// measures the gain.
 #[derive(Debug, Parser)]
 #[command(name = "lacuna", version, about, arg_required_else_help = true)]
+#[command(after_long_help = "Exit status:\n  \
+    0    done\n  \
+    1    the work failed, or `check` was interrupted\n  \
+    2    the call or its input is wrong\n  \
+    3    the data reject the model (check)\n  \
+    4    the data themselves are at fault (check)\n  \
+    130  ended by a second Ctrl-C\n\n\
+    Results go to stdout, remarks and progress to stderr. --json puts one JSON document on stdout, also\n\
+    on failure; docs/schema describes it. NO_COLOR and --quiet are heard. `lacuna COMMAND --help` shows\n\
+    an example of each.")]
 pub struct Args {
     #[command(subcommand)]
     pub command: Command,
@@ -93,10 +105,17 @@ pub enum Command {
         --out. The same call goes on from checkpoint.json there; one Ctrl-C stops with the best model."
     )]
     Fit(Fit),
-    /// Shows what a model leaves unexplained on records, as a force on every channel; names nothing
-    #[command(after_help = "Example:\n  lacuna look --model press.toml --data est.csv\n\n\
+    /// Shows what a record is like; with a model, what the model leaves unexplained, as a force
+    #[command(
+        after_help = "Examples:\n  lacuna look --data est.csv --inputs force --outputs position\n  \
+        lacuna look --model press.toml --data est.csv\n\n\
+        Without a model: sampling, range, grain, what is clipped or stuck, spectrum, excitation,\n\
+        coherence, delays, periods with noise and distortion, and whether inputs react to outputs.\n\
+        Columns u, u1.. drive and all others are measured, where --inputs and --outputs do not say.\n\n\
+        With a model: \
         Smooths the missing force of every channel, no law assumed, and says how much of it a curve of\n\
-        each coordinate explains. Writes look.html into --out; takes seconds.")]
+        each coordinate explains. Writes look.html into --out; takes seconds."
+    )]
     Look(Look),
     /// Says what a record can see and tell apart, and the experiment that would tell more
     #[command(after_help = "Example:\n  lacuna plan --model press.toml --data est.csv\n\n\
@@ -135,6 +154,15 @@ pub enum Command {
         Reads report-data.json, which `diagnose` writes, and writes report.html anew: after an update\n\
         of the program, or where the page is lost. Takes the folder or a file in it.")]
     Report(Report),
+    /// Writes a commented model file to begin with, from a registered model or a record's columns
+    #[command(after_help = "Examples:\n  lacuna new mass_spring_damper > press.toml\n  \
+        lacuna new --data est.csv --inputs force --outputs position --order 2 --out press.toml\n\n\
+        Of a record: a linear differential equation of that order for each output, with the record's\n\
+        names and units and rough values. It loads and runs at once; `lacuna estimate` fits it.")]
+    New(New),
+    /// Prints the manual page, or writes those of all commands into a folder
+    #[command(after_help = "Example:\n  lacuna man --out ~/.local/share/man/man1")]
+    Man(Man),
     /// Lists the registered models
     #[command(after_help = "Example:\n  lacuna models --json")]
     Models,
@@ -161,6 +189,13 @@ pub struct ModelAndData {
     pub data: Vec<PathBuf>,
     #[command(flatten)]
     pub columns: Columns,
+}
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Man {
+    /// Folder for one page a command [default: the main page on stdout]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Arguments)]

@@ -17,7 +17,10 @@ mod generate;
 mod input;
 mod linear;
 mod list;
+mod look;
+mod man;
 mod missing;
+mod new;
 mod no_model;
 mod outputs;
 mod plan;
@@ -59,10 +62,12 @@ fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         Command::Fit(fit) => fit::run(fit, seed, args.common.threads, look),
         Command::Generate(generate) => generate::run(generate, seed, look),
         Command::Study(study) => study::run(study, seed, args.common.threads, look),
-        Command::Look(args) => missing::run(args, look),
+        Command::Look(args) => look::run(args, look),
         Command::Plan(plan) => plan::run(plan, look),
         Command::Check(check) => check::run(check, look),
         Command::Report(report) => reported::run(report, look),
+        Command::New(new) => new::run(new, look),
+        Command::Man(man) => man::run(man, look),
         Command::Models => list::models(look),
         Command::Effects => list::effects(look),
         Command::Completions { shell } => list::completions(*shell, look),

@@ -10,6 +10,7 @@ pub mod effect;
 pub mod evaluate;
 pub mod fault;
 pub mod file;
+pub mod look;
 pub mod model;
 pub mod optimise;
 pub mod real;

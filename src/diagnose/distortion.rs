@@ -63,7 +63,7 @@ pub struct Distortion {
 }
 
 /// What the first record of enough periods shows of distortion, per output.
-pub(crate) fn distortion(records: &[Record]) -> BTreeMap<String, Distortion> {
+pub fn distortion(records: &[Record]) -> BTreeMap<String, Distortion> {
     let Some((record, lit)) = records.iter().find_map(|r| Some((r, Lit::of(r)?))) else {
         return BTreeMap::new();
     };

@@ -90,7 +90,7 @@ pub use cause::{
 };
 pub use checked::Checked;
 pub use diagnosis::Diagnosis;
-pub use distortion::{AtLines, Distortion};
+pub use distortion::{AtLines, Distortion, distortion};
 pub use error::DiagnoseError;
 pub use feedback::ClosedLoop;
 pub use finding::{

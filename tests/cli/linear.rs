@@ -102,7 +102,6 @@ fn calls_that_do_not_go_together() {
         ("estimate --lti --model m.toml --data d.csv --out f.toml", &["--lti", "--model"]),
         ("estimate --lti 0 --data d.csv --out f.toml", &["--lti", "1 or above"]),
         ("estimate --lti --fix m --data d.csv --out f.toml", &["--fix"]),
-        ("estimate --model m.toml --inputs u --data d.csv --out f.toml", &["--inputs"]),
         ("estimate --lti --sampling-time 0 --data d.csv --out f.toml", &["--sampling-time"]),
     ] {
         refused(&folder, line, "call", at, words);

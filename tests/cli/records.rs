@@ -32,7 +32,7 @@ fn files_that_hold_nothing() {
     refused(&folder, LINE, "input", at, &["cannot be read"]);
     wrong(&folder, b"", 0, 0, "", &["empty"]);
     wrong(&folder, b"time,u,y\n", 1, 0, "", &[]);
-    wrong(&folder, b"time,u,y\n0,1,2\n0.1,1,2\xB0\n", 3, 3, "y", &["UTF-8"]);
+    wrong(&folder, b"time,u,y\n0,1,2\n0.1,\x01,2\xB0\n", 3, 0, "", &["neither text"]);
     wrong(&folder, b"\x1f\x8b\x08 and no more", 0, 0, "", &[]);
 }
 
@@ -58,14 +58,14 @@ fn values() {
     wrong(&folder, &with("4.0,inf,0.1"), 43, 2, "u", &["inf"]);
     wrong(&folder, &with("4.0,1.0,1e999"), 43, 3, "y", &["1e999"]);
     wrong(&folder, &with("noon,1.0,0.1"), 43, 1, "time", &["noon"]);
-    wrong(&folder, b"time;u;y\n0,0;1,5;2\n0,1;1;2\n", 2, 1, "time", &["point"]);
+    wrong(&folder, b"time;u;y\n0,0;1,5;2\n0,1;1.5;2\n", 2, 1, "time", &["point"]);
 }
 
 #[test]
 fn time() {
     let folder = folder("record_time");
     let jitter = format!("time,u,y\n{}4.004,1,2\n{}", rows(0..40), rows(41..60));
-    wrong(&folder, jitter.as_bytes(), 42, 1, "time", &["resample"]);
+    wrong(&folder, jitter.as_bytes(), 42, 1, "time", &["--repair"]);
     let back = format!("time,u,y\n{}1.0,1,2\n", rows(0..40));
     wrong(&folder, back.as_bytes(), 42, 1, "time", &[]);
     let gap = format!("time,u,y\n{}{}", rows(0..20), rows(30..60));

@@ -31,7 +31,7 @@ pub struct Estimate {
     pub sampling_time: Option<f64>,
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+pub(super) fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(step) if step > 0.0 && step.is_finite() => Ok(step),
         _ => Err("a positive number of seconds is needed".into()),
