@@ -3,6 +3,7 @@
 mod columns;
 mod estimate;
 mod look;
+mod man;
 mod new;
 mod report;
 mod study;
@@ -14,6 +15,7 @@ use clap::{Args as Arguments, Parser, Subcommand};
 pub use columns::Columns;
 pub use estimate::Estimate;
 pub use look::Look;
+pub use man::Man;
 pub use new::New;
 pub use report::Report;
 pub use study::{Study, StudyVerb};
@@ -189,13 +191,6 @@ pub struct ModelAndData {
     pub data: Vec<PathBuf>,
     #[command(flatten)]
     pub columns: Columns,
-}
-
-#[derive(Debug, Clone, Arguments)]
-pub struct Man {
-    /// Folder for one page a command [default: the main page on stdout]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Clone, Arguments)]

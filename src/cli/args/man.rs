@@ -1,0 +1,12 @@
+//! What `lacuna man` is told.
+
+use std::path::PathBuf;
+
+use clap::Args as Arguments;
+
+#[derive(Debug, Clone, Arguments)]
+pub struct Man {
+    /// Folder for one page a command [default: the main page on stdout]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
