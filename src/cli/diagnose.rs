@@ -18,7 +18,7 @@ use lacuna::system::System;
 const MODEL: &str = "extended.toml";
 const PAGE: &str = "report.html";
 const DOCUMENT: &str = "diagnosis.json";
-pub const FILES: [&str; 3] = [PAGE, MODEL, DOCUMENT];
+pub const FILES: [&str; 4] = [PAGE, MODEL, DOCUMENT, reported::STORED];
 
 /// What results are called, where they go, and where they are from.
 pub struct Results<'a> {

@@ -1,8 +1,9 @@
 //! `lacuna fit`.
 
+mod progress;
+
 use std::fmt::Write as _;
 use std::fs;
-use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 use serde_json::{Map, Value, json};
@@ -19,13 +20,15 @@ use lacuna::file::{Document, save_with, write_text};
 use lacuna::lfr::AugmentedModel;
 use lacuna::report::{Shown, TrainingReport};
 use lacuna::system::System;
-use lacuna::train::{Checkpoint, Ended, Epoch, Fit, Follow, Recipe, Run};
-use lacuna::watch::Watch;
+use lacuna::train::{Checkpoint, Ended, Epoch, Fit, Recipe, Run};
+
+use progress::{Following, Progress};
 
 /// Share of the data that is kept for validation where no record is given for it.
 const VALIDATION: f64 = 0.2;
 /// What a training writes beside its checkpoint.
-const FILES: [&str; 4] = ["model.toml", "weights.json", "history.csv", "report.html"];
+const FILES: [&str; 4] = ["model.toml", "weights.json", "history.csv", PAGE];
+const PAGE: &str = "report.html";
 
 pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Result<u8, Failure> {
     let test: Vec<PathBuf> = args.test.iter().cloned().collect();
@@ -73,50 +76,13 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     if known {
         look.say("Going on from the checkpoint.");
     }
-    let mut progress =
-        Progress { look, epochs: recipe.training.epochs, last: String::new(), at: 0 };
+    let lengths = recipe.training.validation.lengths.clone();
+    let page = Following::of(args.out.join(PAGE), &want.outputs, &lengths);
+    let mut progress = Progress::of(look, recipe.training.epochs, page);
     let fit = recipe.training.fit(&start, &records, &validation, &mut progress)?;
     look.clear();
     let done = Done { args, system: &system, recipe: &recipe, fit: &fit, want: &want.outputs };
     done.write(&started.to_string(), test.as_ref().or(validation.first()), test.is_some(), look)
-}
-
-/// Tells how far the training is, and ends it on Ctrl-C.
-struct Progress<'a> {
-    look: &'a Console,
-    epochs: usize,
-    last: String,
-    at: usize,
-}
-
-impl Follow for Progress<'_> {
-    fn on_epoch(&mut self, epoch: &Epoch) -> ControlFlow<()> {
-        self.at = epoch.epoch;
-        let mut text = format!("epoch {} of {}", epoch.epoch, self.epochs);
-        if let Some(loss) = epoch.loss {
-            let _ = write!(text, ", loss {loss:.3e}");
-        }
-        if let Some(score) = &epoch.score {
-            let errors = score.simulation.first().or(score.ahead.last().and_then(|a| a.first()));
-            if let Some(error) = errors {
-                let _ = write!(text, ", validation RMSE {}", number(*error, None));
-            }
-        }
-        self.last = text;
-        self.tell(0.0)
-    }
-
-    fn on_step(&mut self, done: usize, of: usize) -> ControlFlow<()> {
-        self.tell(done as f64 / of.max(1) as f64)
-    }
-}
-
-impl Progress<'_> {
-    fn tell(&self, of_epoch: f64) -> ControlFlow<()> {
-        let done = (self.at as f64 + of_epoch) / self.epochs.max(1) as f64;
-        self.look.tell(done.min(1.0), &self.last);
-        if self.look.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    }
 }
 
 /// A finished training and where it goes.
@@ -160,7 +126,7 @@ impl Done<'_> {
         if let (Some(record), Some(run)) = (shown, &run) {
             report = report.showing(Shown { record, baseline: &baseline, run });
         }
-        let page = out.join("report.html");
+        let page = out.join(PAGE);
         report.write(&page).map_err(|error| cannot_write(&page, &error))?;
         let scores = match (shown, &run) {
             (Some(record), Some(run)) => self.scores(record, &baseline, run),

@@ -48,7 +48,7 @@ impl Overlay<'_> {
         let (name, unit) = self.output;
         let last = self.measured.len().saturating_sub(1);
         let mut figure = Figure::new("time [s]", &with_unit(name, unit))
-            .titled(&format!("{name}: measured and simulated"))
+            .titled(&format!("{name} over time"))
             .linked("time")
             .line(Role::Measured, "measured", self.timed(self.measured));
         if last > samples {

@@ -129,7 +129,9 @@ impl Figure {
                 }),
                 Shape::Dots(points) => points.iter().for_each(|p| {
                     x.add(p.0);
+                    y.add(p.1 - p.2);
                     y.add(p.1);
+                    y.add(p.1 + p.2);
                 }),
                 Shape::Level(value) => y.add(*value),
                 Shape::Upright(value) if self.view.is_none() => x.add(*value),

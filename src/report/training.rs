@@ -10,6 +10,8 @@ use crate::train::{Ended, Epoch, Fit, Run};
 
 /// Samples of the close-up.
 const CLOSE: usize = 300;
+/// Seconds between two versions of the page of a training that goes on.
+pub const AGAIN: u32 = 5;
 /// Colours in turn.
 const ROLES: [Role; 4] = [Role::After, Role::Before, Role::Law, Role::Floor];
 
@@ -27,7 +29,13 @@ pub struct Shown<'a> {
 /// The report of a training as one self-contained HTML page.
 #[derive(Debug, Clone)]
 pub struct TrainingReport<'a> {
-    fit: &'a Fit,
+    history: &'a [Epoch],
+    /// Why it ended; none while it goes on.
+    ended: Option<Ended>,
+    /// Epoch of the best model.
+    best: usize,
+    /// Epochs that are planned.
+    epochs: usize,
     outputs: Vec<(String, String)>,
     lengths: Vec<usize>,
     shown: Option<Shown<'a>>,
@@ -38,8 +46,23 @@ impl<'a> TrainingReport<'a> {
     /// Of a finished training; `outputs` are names and units, `lengths` those of the T-step
     /// errors in the history.
     pub fn of(fit: &'a Fit, outputs: &[(String, String)], lengths: &[usize]) -> Self {
+        let mut report = Self::running(&fit.history, fit.history.len(), outputs, lengths);
+        (report.ended, report.best) = (Some(fit.ended), fit.epoch);
+        report
+    }
+
+    /// Of a training that goes on: its epochs so far, and how many are planned. The page loads
+    /// itself again.
+    pub fn running(
+        history: &'a [Epoch],
+        epochs: usize,
+        outputs: &[(String, String)],
+        lengths: &[usize],
+    ) -> Self {
         let (outputs, lengths) = (outputs.to_vec(), lengths.to_vec());
-        Self { fit, outputs, lengths, shown: None, notes: vec![] }
+        let best = history.iter().rfind(|epoch| epoch.best).or(history.last());
+        let best = best.map_or(0, |epoch| epoch.epoch);
+        Self { history, ended: None, best, epochs, outputs, lengths, shown: None, notes: vec![] }
     }
 
     /// The same with a record.
@@ -78,24 +101,29 @@ impl<'a> TrainingReport<'a> {
             self.signals(&mut page, shown);
         }
         self.table(&mut page);
-        page.titled("Training").html()
+        let page = page.titled("Training");
+        if self.ended.is_none() { page.again(AGAIN).html() } else { page.html() }
     }
 
     fn headline(&self) -> String {
-        let last = self.fit.history.last().map_or(0, |epoch| epoch.epoch);
-        let ended = match self.fit.ended {
-            Ended::Budget => "as planned",
-            Ended::Patience => "because the validation error fell no further",
-            Ended::Asked => "because it was asked to",
+        let last = self.history.last().map_or(0, |epoch| epoch.epoch);
+        let best = self.best;
+        let ended = match self.ended {
+            None => {
+                let of = self.epochs;
+                return format!(
+                    "Epoch {last} of {of}; the model of epoch {best} is the best so far."
+                );
+            }
+            Some(Ended::Budget) => "as planned",
+            Some(Ended::Patience) => "because the validation error fell no further",
+            Some(Ended::Asked) => "because it was asked to",
         };
-        format!(
-            "The model of epoch {} is the best of {last}; training ended {ended}.",
-            self.fit.epoch
-        )
+        format!("The model of epoch {best} is the best of {last}; training ended {ended}.")
     }
 
     fn courses(&self, page: &mut Page) {
-        let history = &self.fit.history;
+        let history = self.history;
         let losses: Vec<(f64, f64)> =
             history.iter().filter_map(|e| Some((e.epoch as f64, e.loss?))).collect();
         page.heading("Loss");
@@ -169,12 +197,13 @@ impl<'a> TrainingReport<'a> {
             }
             row
         };
+        let best = self.best;
         // the best epoch and about thirty others, scored ones where there are some
-        let scored = self.fit.history.iter().filter(|e| e.score.is_some()).count();
+        let scored = self.history.iter().filter(|e| e.score.is_some()).count();
         let listed = |e: &&Epoch| scored == 0 || e.score.is_some();
-        let every = self.fit.history.iter().filter(listed).count().div_ceil(30).max(1);
-        let numbered = self.fit.history.iter().filter(listed).enumerate();
-        let kept = numbered.filter(|(i, e)| i % every == 0 || e.epoch == self.fit.epoch);
+        let every = self.history.iter().filter(listed).count().div_ceil(30).max(1);
+        let numbered = self.history.iter().filter(listed).enumerate();
+        let kept = numbered.filter(|(i, e)| i % every == 0 || e.epoch == best);
         let kept = kept.map(|(_, epoch)| epoch);
         let rows: Vec<Vec<String>> = kept.map(row).collect();
         page.table(&header.iter().map(|h| &h[..]).collect::<Vec<_>>(), &rows);

@@ -10,7 +10,11 @@ const ROLES: [Role; 5] = [Role::Measured, Role::Before, Role::After, Role::Floor
 #[derive(Debug, Clone, Copy)]
 pub struct StudyReport<'a> {
     of: &'a StudyResult,
+    running: bool,
 }
+
+/// Seconds after which the page of a study that goes on loads itself again.
+const AGAIN: u32 = 15;
 
 fn role(start: usize) -> Role {
     ROLES[start % ROLES.len()]
@@ -19,7 +23,14 @@ fn role(start: usize) -> Role {
 impl<'a> StudyReport<'a> {
     /// The report of a study's results.
     pub fn of(of: &'a StudyResult) -> Self {
-        Self { of }
+        Self { of, running: false }
+    }
+
+    /// The same of a study that goes on: the page loads itself again.
+    #[must_use]
+    pub fn running(mut self) -> Self {
+        self.running = true;
+        self
     }
 
     /// The page.
@@ -28,11 +39,16 @@ impl<'a> StudyReport<'a> {
         page.element("p", "kicker", "Monte Carlo study");
         let (starts, seeds) = (frame.starts.len(), frame.seeds);
         page.element("h1", "", &format!("{starts} starts, {seeds} seeds each"));
+        if self.running {
+            let (done, of) = (self.of.done.len(), starts as u64 * seeds);
+            page.element("p", "gain", &format!("{done} of {of} trainings are done."));
+        }
         self.courses(&mut page);
         self.boxes(&mut page);
         self.noise(&mut page);
         self.table(&mut page);
-        page.titled("Monte Carlo study").html()
+        let page = page.titled("Monte Carlo study");
+        if self.running { page.again(AGAIN).html() } else { page.html() }
     }
 
     fn unit(&self) -> String {

@@ -112,6 +112,20 @@ impl StudyResult {
     ///
     /// As [`StudyResult::new`], and if a file cannot be read.
     pub fn merge(folders: &[PathBuf]) -> Result<Self, StudyError> {
+        let (done, noise) = Self::read(folders)?;
+        Self::new(done, noise)
+    }
+
+    /// What is done so far in a folder, whatever is missing; `None` where nothing is.
+    pub(super) fn so_far(folder: &Path) -> Option<Self> {
+        let (mut done, noise) = Self::read(&[folder.to_path_buf()]).ok()?;
+        done.sort_by_key(|done| (done.job.start, done.job.seed));
+        let frame = done.first()?.frame.clone();
+        done.retain(|done| done.frame == frame);
+        Some(Self { frame, done, noise })
+    }
+
+    fn read(folders: &[PathBuf]) -> Result<(Vec<Done>, Vec<Level>), StudyError> {
         let (mut done, mut noise) = (vec![], vec![]);
         for folder in folders {
             let runs = folder.join("runs");
@@ -133,7 +147,7 @@ impl StudyResult {
                 }
             }
         }
-        Self::new(done, noise)
+        Ok((done, noise))
     }
 
     pub(super) fn of_start(&self, start: usize) -> impl Iterator<Item = &Done> {

@@ -4,15 +4,18 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
 
 use super::job::{Frame, write};
 use super::monte_carlo::{Inputs, MonteCarlo};
-use super::{Job, StudyError};
+use super::{Job, StudyError, StudyReport, StudyResult};
 use crate::train::{Epoch, Follow};
 use crate::watch::Watch;
 
 /// Parts that the progress of one job is counted in.
 const PARTS: usize = 1000;
+/// Time between two versions of the page of a study that goes on.
+const REWRITTEN: Duration = Duration::from_secs(5);
 
 impl MonteCarlo {
     /// Works jobs off, each with its result in `folder/runs`; those whose results are there
@@ -32,6 +35,7 @@ impl MonteCarlo {
         folder: &Path,
         watch: &dyn Watch,
     ) -> Result<usize, StudyError> {
+        let (root, shown) = (folder, Mutex::new(Instant::now()));
         let folder = folder.join("runs");
         std::fs::create_dir_all(&folder).map_err(|error| StudyError::write(&folder, error))?;
         let signals = inputs.system.signals();
@@ -75,6 +79,7 @@ impl MonteCarlo {
                     Ok(Some(_)) => {
                         progress[number].store(PARTS, Ordering::Relaxed);
                         finished.fetch_add(1, Ordering::Relaxed);
+                        show(root, &shown);
                     }
                     Ok(None) => return,
                     Err(error) => {
@@ -100,6 +105,21 @@ impl MonteCarlo {
             _ => Ok(finished.into_inner()),
         }
     }
+}
+
+/// Writes the page of what is done so far, not more often than [`REWRITTEN`].
+fn show(folder: &Path, shown: &Mutex<Instant>) {
+    // who finds another one at it leaves it to that one
+    let Ok(mut last) = shown.try_lock() else { return };
+    if last.elapsed() < REWRITTEN {
+        return;
+    }
+    if let Some(result) = StudyResult::so_far(folder) {
+        // a page that cannot be written now is no reason to end; the last one says so
+        let page = StudyReport::of(&result).running().html();
+        let _ = crate::file::write_text(&folder.join("report.html"), &page);
+    }
+    *last = Instant::now();
 }
 
 /// Tells how far all jobs are together.

@@ -74,6 +74,7 @@ test("ranges: what is within, positive on a logarithmic axis, and never empty", 
   assert.deepEqual(extremes(item, 0, 9, true), [2, 8]);
   assert.equal(extremes(item, 4, 9, false), null);
   assert.deepEqual(extremes({ kind: "level", at: 3 }, 0, 1, false), [3, 3]);
+  assert.deepEqual(extremes({ ...item, kind: "dots", z: [1, 0, 0, 0, 0] }, 0, 0, false), [4, 6]);
   assert.deepEqual(extremes({ ...item, kind: "band", z: [9, 9, 9, 9, 9] }, 0, 0, false), [5, 9]);
   assert.deepEqual(reach([item, { kind: "upright", at: 99 }], false), [0, 4]);
   assert.deepEqual(reach([item], true), [1, 4]);

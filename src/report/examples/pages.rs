@@ -36,7 +36,7 @@ fn record(page: &mut Page, n: usize, [output, unit, input]: [&str; 3]) {
     page.heading(&format!("{output}: measured and simulated"));
     page.figure(
         Figure::new("time [s]", &format!("{output} [{unit}]"))
-            .titled(&format!("{output}: measured and simulated"))
+            .titled(&format!("{output} over time"))
             .linked("time")
             .view(at(close), at(close + 400))
             .line(Role::Measured, "measured", timed(&measured))

@@ -7,7 +7,7 @@ const LOOKS = {
   before: { width: 1.5, dash: [7, 4], alpha: 1, marker: 0 },
   after: { width: 1.8, dash: [], alpha: 1, marker: 0 },
   law: { width: 2.4, dash: [], alpha: 1, marker: 0 },
-  free: { width: 1.4, dash: [1, 3], alpha: 1, marker: 0 },
+  free: { width: 1.3, dash: [], alpha: 1, marker: 0 },
   floor: { width: 1.6, dash: [2, 4], alpha: 1, marker: 0 },
   quiet: { width: 1.2, dash: [4, 4], alpha: 1, marker: 0 },
 };

@@ -83,6 +83,10 @@ function extremes(item, low, high, log) {
     for (let k = from; k < to; k++) {
       const x = item.x.at(k);
       if (x < low || x > high) continue;
+      if (item.kind === "dots" && item.z[k] > 0) {
+        take(item.y[k] - item.z[k]);
+        take(item.y[k] + item.z[k]);
+      }
       take(item.y[k]);
       if (item.kind === "band") take(item.z[k]);
     }
