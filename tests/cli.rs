@@ -14,6 +14,7 @@ mod pipes;
 mod plan;
 mod records;
 mod refusal;
+mod report;
 mod work;
 
 /// A model that takes a moment to simulate.

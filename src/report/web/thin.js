@@ -79,16 +79,21 @@ function extremes(item, low, high, log) {
   };
   if (item.kind === "level") take(item.at);
   else if (item.kind !== "upright") {
-    const [from, to] = item.x.rising ? [item.x.from(low), within(item.x, low, high)[1]] : [0, item.x.n];
+    const { x, y, z } = item;
+    let [from, to] = x.rising ? [x.from(low), within(x, low, high)[1]] : [0, x.n];
+    while (x.rising && to > from && x.at(to - 1) > high) to--;
+    const spread = item.kind === "dots" ? z : null;
     for (let k = from; k < to; k++) {
-      const x = item.x.at(k);
-      if (x < low || x > high) continue;
-      if (item.kind === "dots" && item.z[k] > 0) {
-        take(item.y[k] - item.z[k]);
-        take(item.y[k] + item.z[k]);
+      if (!x.rising && (x.at(k) < low || x.at(k) > high)) continue;
+      const v = y[k];
+      // most values of a long record are neither, and are done with here
+      if (v <= max && v >= min && !z) continue;
+      take(v);
+      if (item.kind === "band") take(z[k]);
+      if (spread && spread[k] > 0) {
+        take(v - spread[k]);
+        take(v + spread[k]);
       }
-      take(item.y[k]);
-      if (item.kind === "band") take(item.z[k]);
     }
   }
   return min <= max ? [min, max] : null;
