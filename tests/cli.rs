@@ -8,6 +8,7 @@ use serde_json::Value;
 mod calls;
 mod linear;
 mod lists;
+mod look;
 mod model_files;
 mod outputs;
 mod pipes;
@@ -15,6 +16,7 @@ mod plan;
 mod records;
 mod refusal;
 mod report;
+mod schema;
 mod work;
 
 /// A model that takes a moment to simulate.

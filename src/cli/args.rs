@@ -1,6 +1,7 @@
 //! What can be typed.
 
 mod columns;
+mod diagnose;
 mod estimate;
 mod look;
 mod man;
@@ -13,6 +14,7 @@ use std::path::PathBuf;
 use clap::{Args as Arguments, Parser, Subcommand};
 
 pub use columns::Columns;
+pub use diagnose::Diagnose;
 pub use estimate::Estimate;
 pub use look::Look;
 pub use man::Man;
@@ -77,7 +79,10 @@ pub enum Command {
     Demo(Demo),
     /// Shows what a model gets wrong on a record, names the cause and measures the gain
     #[command(
-        after_help = "Example:\n  lacuna diagnose --model press.toml --data est.csv --test test.csv\n\n\
+        after_help = "Examples:\n  lacuna diagnose --model press.toml --data est.csv --test test.csv\n  \
+        lacuna diagnose --data est.csv --inputs force --outputs position\n\n\
+        Without --model, a linear one is estimated from the first part of the record (linear.toml), and\n\
+        what it gets wrong is shown.\n\n\
         Writes report.html, extended.toml and diagnosis.json into --out. The records are split by\n\
         time: 70 % fit, 30 % choose; the test record is touched once, for scoring. One Ctrl-C stops\n\
         with what is known."
@@ -198,34 +203,6 @@ pub struct Demo {
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
     pub out: PathBuf,
-}
-
-#[derive(Debug, Clone, Arguments)]
-pub struct Diagnose {
-    #[command(flatten)]
-    pub on: ModelAndData,
-    /// Record for scoring, used for nothing else [default: the last 20 % of the data]
-    #[arg(long, value_name = "FILE")]
-    pub test: Option<PathBuf>,
-    /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
-    pub out: PathBuf,
-    /// Effects to look for, and no others
-    #[arg(long, value_name = "EFFECT", value_delimiter = ',', num_args = 1..)]
-    pub only: Vec<String>,
-    /// Effects not to look for
-    #[arg(long, value_name = "EFFECT", value_delimiter = ',', num_args = 1..)]
-    pub without: Vec<String>,
-    /// Parameters that are right
-    #[arg(long, value_name = "PARAMETER", value_delimiter = ',', num_args = 1..)]
-    pub fix: Vec<String>,
-    /// Causes at most
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = positive)]
-    pub max_causes: usize,
-    /// Samples from which the test record's initial state is estimated; its figures leave
-    /// them out [default: until the start is forgotten, at most 10 %]
-    #[arg(long, value_name = "N")]
-    pub init: Option<usize>,
 }
 
 #[derive(Debug, Clone, Arguments)]

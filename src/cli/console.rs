@@ -40,6 +40,8 @@ pub struct Console {
 #[derive(Default)]
 struct Course {
     done: f64,
+    /// Where the work in hand begins and ends among all of it, where it is not all.
+    span: Option<(f64, f64)>,
     doing: String,
     since: Option<Instant>,
     spent: Vec<(String, Duration)>,
@@ -161,6 +163,13 @@ impl Console {
         self.say(&format!("{:.0} s, most of it: {}", spent.as_secs_f64(), parts.join(", ")));
     }
 
+    /// What follows is this part of the work, from 0 to 1.
+    pub fn part(&self, from: f64, to: f64) {
+        if let Ok(mut course) = self.course.lock() {
+            course.span = Some((from, to));
+        }
+    }
+
     /// Lets the first Ctrl-C ask for an end and the second one make it.
     pub fn hear_interrupts(&self) -> Result<(), Failure> {
         if self.lively && !self.quiet {
@@ -182,7 +191,8 @@ impl Watch for Console {
         let spent = self.started.elapsed();
         let Ok(mut course) = self.course.lock() else { return };
         // several threads tell, and not in order: what was done stays done
-        course.done = course.done.max(done.clamp(0.0, 1.0));
+        let (from, to) = course.span.unwrap_or((0.0, 1.0));
+        course.done = course.done.max(from + (to - from) * done.clamp(0.0, 1.0));
         let done = course.done;
         let is_new = course.doing != doing;
         if is_new {

@@ -6,10 +6,12 @@ use std::path::Path;
 use super::args::Diagnose as Args;
 use super::console::{Console, print};
 use super::failure::Failure;
+use super::no_model::Asked;
 use super::outputs::{self, cannot_write};
 use super::{input, provenance, reported};
-use lacuna::data::Record;
+use lacuna::data::{DataError, Record};
 use lacuna::diagnose::{Diagnosis, Finding, Outlook, Planner, Watch};
+use lacuna::estimate::linear_with;
 use lacuna::file::{save_with, write_text};
 use lacuna::report::{Beside, Document, Provenance, Report, sentences};
 use lacuna::system::System;
@@ -18,6 +20,8 @@ use lacuna::system::System;
 const MODEL: &str = "extended.toml";
 const PAGE: &str = "report.html";
 const DOCUMENT: &str = "diagnosis.json";
+/// The model that is made where none is given.
+const LINEAR: &str = "linear.toml";
 pub const FILES: [&str; 4] = [PAGE, MODEL, DOCUMENT, reported::STORED];
 
 /// What results are called, where they go, and where they are from.
@@ -29,37 +33,90 @@ pub struct Results<'a> {
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     let apart: Vec<_> = args.test.iter().cloned().collect();
-    outputs::distinct(&args.on.data, &[("--test", &apart)])?;
-    let mut inputs = outputs::paths(&[&args.on.data, &apart]);
-    inputs.push(&args.on.model);
-    outputs::check(&inputs, &outputs::within(&args.out, &FILES), look)?;
-    let (system, want) = input::model(&args.on.model)?;
-    let columns = &args.on.columns;
-    let records = input::records(&args.on.data, &want, columns, look)?;
+    outputs::distinct(&args.data, &[("--test", &apart)])?;
+    let mut inputs = outputs::paths(&[&args.data, &apart]);
+    inputs.extend(args.model.as_deref());
+    let mut files = FILES.to_vec();
+    files.extend(args.model.is_none().then_some(LINEAR));
+    outputs::check(&inputs, &outputs::within(&args.out, &files), look)?;
+    let columns = &args.columns;
+    let asked = Asked { columns, step: args.sampling_time, order: None };
+    let (own, records) = match &args.model {
+        Some(path) => {
+            let (system, want) = input::model(path)?;
+            let records = input::records(&args.data, &want, columns, look)?;
+            (Some((system, want)), records)
+        }
+        None => (None, asked.records(&args.data, look)?),
+    };
     if columns.repair {
         let names = (0..records.len()).map(|k| args.out.join(input::repaired(k)));
         outputs::apart(&inputs, &names.collect::<Vec<_>>())?;
         fs::create_dir_all(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
         input::keep_repaired(&records, columns, &args.out, look)?;
     }
-    let test = args.test.as_ref();
-    let test = test.map(|path| input::record(path, &want, columns, look)).transpose()?;
-    let mut from = provenance::with(provenance::of_this_call(seed), "model", &args.on.model)?;
-    for path in &args.on.data {
+    let test = match (&args.test, &own) {
+        (Some(path), Some((_, want))) => Some(input::record(path, want, columns, look)?),
+        (Some(path), None) => asked.records(std::slice::from_ref(path), look)?.into_iter().next(),
+        (None, _) => None,
+    };
+    let mut from = provenance::of_this_call(seed);
+    if let Some(path) = &args.model {
+        from = provenance::with(from, "model", path)?;
+    }
+    for path in &args.data {
         from = provenance::with(from, "data", path)?;
     }
     if let Some(path) = &args.test {
         from = provenance::with(from, "test", path)?;
     }
+    // everything that can be written is known to be so before the first long work
+    fs::create_dir_all(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
+    look.hear_interrupts()?;
+    let system = match own {
+        Some((system, _)) => system,
+        None => linear_of(&records, test.is_some(), &args.out, look)?,
+    };
     let diagnosis = Diagnosis::of(&system)
         .only(&args.only)
         .without(&args.without)
         .fix(&args.fix)
         .max_causes(args.max_causes)
         .init(input::init(args.init));
-    let title = args.on.model.display().to_string();
+    let title = match &args.model {
+        Some(path) => path.display().to_string(),
+        None => "a linear model of the record".into(),
+    };
     let results = Results { title: &title, out: &args.out, from };
-    look_for(&diagnosis, &records, test.as_ref(), results, look)
+    finish(&diagnosis, &records, test.as_ref(), results, look)
+}
+
+/// A linear model of the part of the records that the diagnosis fits to: the rest, by which causes
+/// are chosen and scored, stays unseen.
+fn linear_of(
+    records: &[Record],
+    has_test: bool,
+    out: &Path,
+    look: &Console,
+) -> Result<System, Failure> {
+    let share = if has_test { 0.7 } else { 0.6 };
+    let first = |record: &Record| Ok(record.split(&[share])?.remove(0));
+    let parts: Vec<Record> = records.iter().map(first).collect::<Result<_, DataError>>()?;
+    look.part(0.0, 0.2);
+    let found = linear_with(&parts, None, look)?;
+    look.part(0.2, 1.0);
+    let header = ["Written by `lacuna diagnose`: a linear model of the record.".to_string()];
+    save_with(&found.system, &out.join(LINEAR), &header)?;
+    look.result(&format!(
+        "No model was given: this is about a linear one of order {}, estimated from the first {:.0} % of \
+         the data ({LINEAR}). Its states are coordinates of the fit and mean nothing by themselves.",
+        found.order,
+        100.0 * share
+    ));
+    for remark in &found.remarks {
+        look.result(remark);
+    }
+    Ok(found.system)
 }
 
 /// The experiments that would tell look-alikes apart, where there are some.
@@ -91,10 +148,21 @@ pub fn look_for(
     results: Results<'_>,
     look: &Console,
 ) -> Result<u8, Failure> {
-    let Results { title, out, from } = results;
     // a folder that cannot be made is better known before the work than after it
-    fs::create_dir_all(out).map_err(|error| cannot_write(out, &error))?;
+    fs::create_dir_all(results.out).map_err(|error| cannot_write(results.out, &error))?;
     look.hear_interrupts()?;
+    finish(diagnosis, records, test, results, look)
+}
+
+/// The same, where the folder is there and interrupts are heard.
+fn finish(
+    diagnosis: &Diagnosis<'_>,
+    records: &[Record],
+    test: Option<&Record>,
+    results: Results<'_>,
+    look: &Console,
+) -> Result<u8, Failure> {
+    let Results { title, out, from } = results;
     let finding = diagnosis.run(records, test, look)?;
     let outlook = outlook(&finding, diagnosis.system(), records, look);
     look.clear();

@@ -162,6 +162,8 @@ pub fn linear_with(
             "more than {MOST} states may stand above the noise; ask for them by --lti N"
         ));
     }
+    let longest = records.iter().map(Record::duration).fold(0.0, f64::max);
+    remarks.extend(told::integrates(&numbers.model, records[0].sampling_time, longest));
     let system = told::system(&numbers.model, &records[0]);
     let poles = numbers.model.poles().into_iter().filter(|p| p.1 >= 0.0);
     watch.tell(1.0, "done");

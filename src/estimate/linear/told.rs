@@ -54,6 +54,17 @@ impl Mode {
     }
 }
 
+/// What is to be said of a pole that the records cannot tell from an integrator: its time constant
+/// -T / ln p, or that of growth, is longer than the longest record.
+pub fn integrates(model: &Model, step: f64, duration: f64) -> Option<String> {
+    let slow = |p: &(f64, f64)| p.1 == 0.0 && p.0 > 0.0 && p.0.ln().abs() * duration < step;
+    let pole = model.poles().into_iter().find(slow)?;
+    Some(format!(
+        "the pole {:.6} is slower than the record of {duration} s: the plant integrates, or settles later than the record shows",
+        pole.0
+    ))
+}
+
 /// The numbers of a linear model and the uncertainty of each.
 pub struct Numbers {
     /// The model in the records' units, about 0.
