@@ -76,6 +76,9 @@ fn scratch(name: &str) -> PathBuf {
 #[path = "records/acceptance.rs"]
 mod acceptance;
 
+#[path = "records/other_programs.rs"]
+mod other_programs;
+
 #[path = "records/refusal.rs"]
 mod refusal;
 
