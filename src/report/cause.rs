@@ -62,25 +62,39 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
             if rows.len() > 60 { format!(" and {} more", rows.len() - 60) } else { String::new() };
         page.element("p", "", &format!("Rows: {}{more}.", shown.join(", ")));
     }
-    let entry = |what: &str, a: &Alternative| {
-        vec![
-            what.into(),
-            a.effect.as_str().into(),
-            a.into.as_str().into(),
-            a.of.clone().unwrap_or_default().into(),
-            share(a.error_removed),
-        ]
+    rivals(page, cause);
+}
+
+/// The cause beside what looks like it and what comes next, with probabilities where there are any.
+fn rivals(page: &mut Page, cause: &Cause) {
+    let alike = cause.indistinguishable.iter().map(|a| ("looks alike", a));
+    let others: Vec<(&str, &Alternative)> =
+        alike.chain(cause.runners_up.iter().map(|a| ("runner-up", a))).collect();
+    let weighed =
+        cause.probability.is_some() || others.iter().any(|(_, a)| a.probability.is_some());
+    let row = |what: &str, effect: &str, into: &str, of: String, removed: f64, p: Option<f64>| {
+        let mut row: Vec<Cell> =
+            vec![what.into(), effect.into(), into.into(), of.into(), share(removed)];
+        if weighed {
+            row.push(p.map_or_else(|| "".into(), share));
+        }
+        row
     };
-    let mut rows: Vec<Vec<Cell>> = vec![vec![
-        "named".into(),
-        cause.effect.as_str().into(),
-        cause.into.as_str().into(),
-        coordinates(cause).into(),
-        share(cause.error_removed),
-    ]];
-    rows.extend(cause.indistinguishable.iter().map(|a| entry("looks alike", a)));
-    rows.extend(cause.runners_up.iter().map(|a| entry("runner-up", a)));
-    page.table(&["", "effect", "into", "of", "removes"], &rows);
+    let (removed, p) = (cause.error_removed, cause.probability);
+    let mut rows = vec![row("named", &cause.effect, &cause.into, coordinates(cause), removed, p)];
+    rows.extend(others.into_iter().map(|(what, a)| {
+        let of = a.of.clone().unwrap_or_default();
+        row(what, &a.effect, &a.into, of, a.error_removed, a.probability)
+    }));
+    let mut header = vec!["", "effect", "into", "of", "removes"];
+    if weighed {
+        header.push("probability");
+    }
+    page.table(&header, &rows);
+    if let Some(place) = cause.place_probability {
+        let said = format!("Probability of this place, whatever the law: {:.1} %.", 100.0 * place);
+        page.element("p", "note", &said);
+    }
 }
 
 /// The section of causes that single ones of several records show.

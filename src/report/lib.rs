@@ -128,6 +128,7 @@ impl<'a> Report<'a> {
         cause::unexplained(&mut page, finding);
         cause::alone(&mut page, finding);
         apart::section(&mut page, finding, self.outlook);
+        missing::section(&mut page, finding);
         signals::sections(&mut page, &finding.series, finding);
         distortion::section(&mut page, finding);
         if let Some(system) = self.system {

@@ -5,6 +5,7 @@ use std::path::Path;
 use super::figure::{Figure, Role};
 use super::overlay::with_unit as named;
 use super::page::{Cell, Page, share};
+use crate::diagnose::Finding;
 use crate::digits::number;
 use crate::likelihood::MissingForce;
 
@@ -15,6 +16,32 @@ const DOTS: usize = 1500;
 /// Coordinates that are drawn for each channel, and that are told in words.
 const DRAWN: usize = 3;
 const TOLD: usize = 4;
+
+/// The section of a diagnosis: what has to be added at each channel for the model to follow the record.
+pub(super) fn section(page: &mut Page, finding: &Finding) {
+    if finding.missing.is_empty() {
+        return;
+    }
+    page.heading("Missing force");
+    let mut rows: Vec<Vec<Cell>> = vec![];
+    for force in &finding.missing {
+        let rms = with_unit(force.rms, &force.unit);
+        let by = force.explained_by.first();
+        rows.push(vec![
+            force.channel.as_str().into(),
+            rms.into(),
+            by.map_or("", |by| &by.coordinate[..]).into(),
+            by.map_or_else(|| "".into(), |by| share(by.share)),
+        ]);
+    }
+    page.table(&["channel", "#RMS", "best explained by", "share"], &rows);
+    page.element(
+        "p",
+        "note",
+        "Estimated without a law. The share is that of its mean square that a free curve of the \
+         coordinate explains.",
+    );
+}
 
 /// What `lacuna look` shows: the missing force of every channel.
 ///
