@@ -9,6 +9,7 @@ mod calls;
 mod linear;
 mod lists;
 mod look;
+mod missing;
 mod model_files;
 mod outputs;
 mod pipes;

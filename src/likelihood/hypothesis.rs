@@ -22,8 +22,8 @@ use crate::system::{Placed, Plan};
 const ITERATIONS: usize = 8;
 const DAMPINGS: usize = 6;
 const SETTLED: f64 = 0.02;
-/// Estimates of the noise in one fit.
-const NOISES: usize = 2;
+/// Estimates of the noise in one fit, each followed by one of the numbers.
+const NOISES: usize = 3;
 /// Largest step of a positive shape on the log scale, of any other number in units of its size.
 const STEP: f64 = 0.5;
 
@@ -44,6 +44,11 @@ pub(crate) struct Hypothesis {
 }
 
 impl Hypothesis {
+    /// What its parts are called.
+    pub fn names(&self) -> Vec<(Site, Option<usize>, &'static str)> {
+        names(&self.parts)
+    }
+
     /// Numbers that were fitted, the noise's apart.
     pub fn numbers(&self) -> usize {
         self.parts
@@ -61,8 +66,22 @@ impl Hypothesis {
     }
 }
 
+/// What the parts are called, whatever their order.
+pub(crate) fn names(parts: &[Part]) -> Vec<(Site, Option<usize>, &'static str)> {
+    let mut names: Vec<_> = parts
+        .iter()
+        .map(|part| match part {
+            Part::Law { site, source, law } => (*site, *source, law.name),
+            Part::Parameter(p) => (Site::Parameter(*p), None, "parameter"),
+        })
+        .collect();
+    names.sort_unstable();
+    names
+}
+
 impl Predictor {
-    /// Fits a hypothesis from the values that its parts have; `None` where it cannot be built or run.
+    /// Fits a hypothesis from the values that its parts have at the noise given; `None` where it
+    /// cannot be built or run.
     pub(crate) fn fit(&self, parts: Vec<Part>, theta: &[f64], noise: &Noise) -> Option<Hypothesis> {
         let start = Hypothesis {
             parts,
@@ -70,22 +89,26 @@ impl Predictor {
             noise: noise.clone(),
             log_likelihood: f64::NEG_INFINITY,
         };
-        let (mut best, mut run) = self.evaluated(start).ok()?;
-        for round in 0..NOISES {
+        let (best, run) = self.evaluated(start).ok()?;
+        let (best, _) = self.improved(best, run)?;
+        best.log_likelihood.is_finite().then_some(best)
+    }
+
+    /// The same hypothesis with its noise estimated anew, and its numbers after it, in turn.
+    pub(crate) fn refit(&self, mut best: Hypothesis) -> Option<Hypothesis> {
+        for _ in 0..NOISES {
             let before = best.log_likelihood;
-            (best, run) = self.improved(best, run)?;
             let model = self.extended(&best.parts, &best.theta).ok()?;
             let chosen = self.renewed(&model, &best.noise, 1).ok()?;
-            if chosen.log_likelihood > best.log_likelihood {
-                best.noise = chosen.noise;
-                (best, run) = self.evaluated(best).ok()?;
-            }
-            if round > 0 && best.log_likelihood - before < 0.5 {
+            if !(chosen.log_likelihood > before + SETTLED) {
                 break;
             }
+            best.noise = chosen.noise;
+            best.log_likelihood = chosen.log_likelihood;
+            let (next, run) = self.evaluated(best.clone()).ok()?;
+            best = self.improved(next, run)?.0;
         }
-        (best, _) = self.improved(best, run)?;
-        best.log_likelihood.is_finite().then_some(best)
+        Some(best)
     }
 
     /// The model with a hypothesis in it.

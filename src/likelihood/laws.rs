@@ -5,7 +5,7 @@
 //! path) is a column itself. What remembers (hysteresis, play, lag, delay) is left to a search.
 
 use crate::effect::{
-    CandidateEffect, EffectBlock, EffectCall, EffectCard, Mechanism, Needs, Role, View,
+    CandidateEffect, EffectBlock, EffectCall, EffectCard, Mechanism, Needs, Role, SignRule, View,
 };
 use crate::real::{F64x8, Real};
 use crate::register;
@@ -106,6 +106,26 @@ fn points(
 }
 
 impl Law {
+    /// Keeps its first coefficient to the sign that physics allows it; `direction` is how the channel
+    /// moves the coordinate, where it does.
+    pub fn signed(mut self, direction: Option<f64>) -> Self {
+        let sign = match (self.card.sign, direction) {
+            (SignRule::Opposing { polarity }, Some(d)) => -d * f64::from(polarity),
+            (SignRule::Along, Some(d)) => d,
+            (SignRule::Positive, _) => 1.0,
+            _ => 0.0,
+        };
+        let first = self.coefficients().first().copied();
+        if let Some(knob) = first.map(|i| &mut self.card.knobs[i]) {
+            match sign {
+                s if s > 0.0 => knob.min = knob.min.max(0.0),
+                s if s < 0.0 => knob.max = knob.max.min(0.0),
+                _ => {}
+            }
+        }
+        self
+    }
+
     /// Coefficients that may be fitted.
     pub fn coefficients(&self) -> Vec<usize> {
         let linear = |&&i: &&usize| self.card.knobs[i].role == Role::Coefficient;

@@ -177,7 +177,7 @@ impl Predictor {
     }
 
     /// The table of sources along given states.
-    fn seen(&self, states: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
+    pub(crate) fn seen(&self, states: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
         let (plan, theta) = (&self.model.plan, &self.model.theta);
         let knobs = plan.knob_values();
         let given = (&theta[..], &knobs[..]);

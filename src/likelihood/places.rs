@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 use super::error::LikelihoodError;
 use super::follow::Wanted;
-use super::hypothesis::{Hypothesis, Part};
+use super::hypothesis::{Hypothesis, Part, names};
 use super::intensities::most_likely;
 use super::noise::{Noise, Slow};
 use super::path::Path;
@@ -31,6 +31,11 @@ use crate::system::System;
 /// Places that get a noise of their own, and of which the laws are fitted.
 const LEADING: usize = 6;
 const FITTED: usize = 2;
+/// Sets that get a noise of their own at least, and how far behind the first another may be: they
+/// begin with the noise that is left beside a free curve, which leaves little to gain.
+const LEAST: usize = 3;
+const RACED: f64 = 30.0;
+
 /// Ranks places and laws of what a system lacks on records of it.
 ///
 /// # Errors
@@ -56,7 +61,7 @@ impl Predictor {
         let null = self.renewed(&self.model, noise, 2)?;
         let wanted = Wanted { theta: true, seen: true, gate: Some(self.gate()) };
         let path = self.run(&self.model, &null.noise, wanted)?.path;
-        let spots = self.spots(&path);
+        let spots = self.spots(&path)?;
         let base = Pass::of(&path, &null.noise, false).log_likelihood;
         let mut noises = vec![null.noise.clone()];
         noises.extend(self.whitened(&path, &null.noise));
@@ -166,23 +171,35 @@ impl Predictor {
                 sets(path, &place.noise, spot, offset)
             }
         };
-        let fit = |parts: Vec<Part>| self.fit(parts, theta, &place.noise);
-        let mut found: Vec<Hypothesis> = starts.into_par_iter().filter_map(fit).collect();
         let samples = self.observed();
         let merit = |h: &Hypothesis| h.criterion(samples);
-        found.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
+        let order = |all: &mut Vec<Hypothesis>| all.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
+        let fit = |parts: Vec<Part>| self.fit(parts, theta, &place.noise);
+        let mut raced: Vec<Hypothesis> = starts.into_par_iter().filter_map(fit).collect();
+        order(&mut raced);
+        // the noise anew only for those that it could still bring to the front
+        let top = raced.first().map_or(0.0, &merit);
+        let near = |(i, h): &(usize, Hypothesis)| *i < LEAST || merit(h) > top - RACED;
+        let near: Vec<Hypothesis> =
+            raced.into_iter().enumerate().filter(near).map(|(_, h)| h).collect();
+        let mut found: Vec<Hypothesis> =
+            near.into_par_iter().filter_map(|h| self.refit(h)).collect();
+        order(&mut found);
         // single laws are left out again as long as that is better
         while let Some(best) = found.first().filter(|best| best.parts.len() > 1).cloned() {
-            let without = |i: usize| {
+            let mut fewer: Vec<Vec<Part>> = vec![];
+            for i in 0..best.parts.len() {
                 let mut parts = best.parts.clone();
                 parts.remove(i);
-                self.fit(parts, &best.theta, &best.noise)
-            };
-            let less: Vec<Hypothesis> =
-                (0..best.parts.len()).into_par_iter().filter_map(without).collect();
+                if !found.iter().any(|h| h.names() == names(&parts)) {
+                    fewer.push(parts);
+                }
+            }
+            let without = |parts| self.refit(self.fit(parts, &best.theta, &best.noise)?);
+            let less: Vec<Hypothesis> = fewer.into_par_iter().filter_map(without).collect();
             let better = less.iter().any(|h| merit(h) > merit(&best));
             found.extend(less);
-            found.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
+            order(&mut found);
             if !better {
                 break;
             }
@@ -199,7 +216,7 @@ impl Predictor {
     ) -> Vec<FittedLaws> {
         let samples = self.observed();
         let base = nothing.criterion(samples);
-        let names = |spot: &Spotted| {
+        let count = |spot: &Spotted| {
             let mut names: Vec<&str> = spot.laws.iter().map(|law| law.name).collect();
             names.dedup();
             names.len() as f64
@@ -208,7 +225,7 @@ impl Predictor {
         let mut found: Vec<(f64, Hypothesis)> = fitted
             .into_iter()
             .map(|(h, spot)| {
-                let sets = log_choose(names(&spots[spot]).max(1.0), h.parts.len() as f64);
+                let sets = log_choose(count(&spots[spot]).max(1.0), h.parts.len() as f64);
                 let cost = (spots.len() as f64).ln() + sets;
                 (h.criterion(samples) - base - cost, h)
             })

@@ -5,6 +5,7 @@
 
 use rayon::prelude::*;
 
+use super::error::LikelihoodError;
 use super::evidence::{Evidence, curve_prior, evidence, log_sum};
 use super::laws::{Law, Spot, laws, offsets};
 use super::noise::Noise;
@@ -18,6 +19,11 @@ use crate::system::Origin;
 
 /// Share of a parameter's value that it may be wrong by, as the unit of its amplitude.
 const PARAMETER: f64 = 0.5;
+/// Difference along a force, in units of its scale.
+const NUDGE: f64 = 1e-6;
+/// Share of the largest motion below which a force moves a coordinate through the plant, not itself:
+/// friction then has no sign of its own.
+const DIRECT: f64 = 0.1;
 
 /// A place and everything that could be there.
 #[derive(Debug, Clone)]
@@ -51,7 +57,7 @@ impl Screened {
 
 impl Predictor {
     /// All places along a path with its table of sources and its derivatives along parameters.
-    pub(crate) fn spots(&self, path: &Path) -> Vec<Spotted> {
+    pub(crate) fn spots(&self, path: &Path) -> Result<Vec<Spotted>, LikelihoodError> {
         let plan = &self.model.plan;
         let entries = plan.sources.entries.len();
         let scales = path.force_scales();
@@ -62,20 +68,20 @@ impl Predictor {
             view.own_path = own_path;
             view
         };
-        let mut push =
-            |site, source: Option<usize>, z: Vec<f64>, spot: Option<Spot>, scale: f64| {
-                let own_path = matches!(spot, Some(Spot::OwnPath { .. }));
-                let laws = match spot {
-                    Some(spot) => laws(spot, &view(&z, own_path)),
-                    None => vec![],
-                };
-                let knots = knots(&z).unwrap_or_default();
-                found.push(Spotted { site, source, z, knots, laws, scale });
-            };
+        let push = |site, source: Option<usize>, z: Vec<f64>, spot, scale, direction| {
+            let own_path = matches!(spot, Spot::OwnPath { .. });
+            let laws = laws(spot, &view(&z, own_path)).into_iter();
+            let laws = laws.map(|law| law.signed(direction)).collect();
+            let knots = knots(&z).unwrap_or_default();
+            Spotted { site, source, z, knots, laws, scale }
+        };
+        let forces = self.distinct(path);
+        let moved = forces.iter().map(|&c| self.moved_by(path, c, scales[c]));
+        let moved = moved.collect::<Result<Vec<_>, _>>()?;
         let named = 0..plan.sources.named - 1;
         let distinct: Vec<usize> =
             named.filter(|&e| !(0..e).any(|other| plan.rates.same(e, other))).collect();
-        for c in self.distinct(path) {
+        for (at, &c) in forces.iter().enumerate() {
             for &e in &distinct {
                 let z = column(&path.seen, entries, e);
                 let own = plan.sources.entries[e].1;
@@ -84,14 +90,16 @@ impl Predictor {
                     false if own == Origin::Input(c - nw) => Spot::OwnPath { input: true },
                     false => continue,
                 };
-                push(Site::Force(c), Some(e), z, Some(spot), scales[c]);
+                let most = moved.iter().map(|m| m[e].abs()).fold(0.0, f64::max);
+                let direction = Some(moved[at][e]).filter(|d| d.abs() > DIRECT * most);
+                found.push(push(Site::Force(c), Some(e), z, spot, scales[c], direction));
             }
         }
         for o in (0..ny).filter(|&o| self.spread[o] > 0.0) {
             let source = plan.sources.at(Origin::Output(o));
             let z = column(&path.predicted, ny, o);
             let spot = Spot::OwnPath { input: false };
-            push(Site::Output(o), source, z, Some(spot), self.spread[o]);
+            found.push(push(Site::Output(o), source, z, spot, self.spread[o], None));
         }
         let ones = vec![1.0; path.len];
         let offset = |site, scale: f64| Spotted {
@@ -102,8 +110,7 @@ impl Predictor {
             laws: offsets(),
             scale,
         };
-        let forces = self.distinct(path).into_iter();
-        found.extend(forces.map(|c| offset(Site::Force(c), scales[c])));
+        found.extend(forces.into_iter().map(|c| offset(Site::Force(c), scales[c])));
         let outputs = (0..ny).filter(|&o| self.spread[o] > 0.0);
         found.extend(outputs.map(|o| offset(Site::Output(o), self.spread[o])));
         for (p, parameter) in plan.signals.parameters.iter().enumerate() {
@@ -114,7 +121,24 @@ impl Predictor {
                 found.push(Spotted { site, source: None, z, knots, laws, scale });
             }
         }
-        found
+        Ok(found)
+    }
+
+    /// How far a force of its own scale moves every source within a sample, on average.
+    fn moved_by(&self, path: &Path, c: usize, scale: f64) -> Result<Vec<f64>, LikelihoodError> {
+        let (n, nf) = (path.n, path.forces);
+        let h = NUDGE * scale.max(f64::MIN_POSITIVE);
+        let moved: Vec<f64> = (0..path.len * n)
+            .map(|at| path.states[at] + h * path.g(at / n)[at % n * nf + c])
+            .collect();
+        let there = self.seen(&moved)?;
+        let entries = self.model.plan.sources.entries.len();
+        let mean = |e: usize| {
+            let pairs = there.iter().zip(&path.seen).skip(e).step_by(entries);
+            let finite = pairs.map(|(a, b)| a - b).filter(|d| d.is_finite());
+            finite.sum::<f64>() / (path.len.max(1) as f64 * NUDGE)
+        };
+        Ok((0..entries).map(mean).collect())
     }
 
     /// The sums and evidences of places under a noise.

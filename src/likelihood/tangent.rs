@@ -17,7 +17,7 @@ use super::replay::Pass;
 const ROWS: usize = 64;
 
 /// Where something enters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Site {
     /// An own channel, or an input counted behind them.
     Force(usize),
