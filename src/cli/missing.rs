@@ -6,9 +6,14 @@ use super::args::Look as Args;
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
+use super::outputs::{self, cannot_write};
 use lacuna::fault::Place;
+use lacuna::file::write_text;
 use lacuna::likelihood::{MissingForce, Predictor};
 use lacuna::report::MissingReport;
+
+/// The page, in its folder.
+const PAGE: &str = "look.html";
 
 /// Shows what a model leaves unexplained on records.
 pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
@@ -17,6 +22,9 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         let hint = "add --model FILE: the missing force is what a model lacks".into();
         return Err(Failure::input("no model was given to look with".into(), place, hint));
     };
+    let mut inputs = outputs::paths(&[&args.data]);
+    inputs.push(model);
+    outputs::check(&inputs, &outputs::within(&args.out, &[PAGE]), look)?;
     let (system, want) = input::model(model)?;
     let records = input::records(&args.data, &want, &args.columns, look)?;
     let missing = Predictor::new(&system, &records)?.missing()?;
@@ -25,12 +33,10 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     for line in report.lines() {
         look.result(&line);
     }
-    let page = args.out.join("look.html");
-    let failed = |error: std::io::Error| {
-        Failure::work(format!("{} cannot be written: {error}", page.display()))
-    };
-    std::fs::create_dir_all(&args.out).map_err(failed)?;
-    report.write(&page).map_err(failed)?;
+    let page = args.out.join(PAGE);
+    std::fs::create_dir_all(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
+    write_text(&page, &report.html("Missing force"))
+        .map_err(|error| cannot_write(&page, &error))?;
     look.say(&format!("Wrote {}", page.display()));
     look.document(&json!({
         "schema": 1,

@@ -68,7 +68,7 @@ impl Predictor {
         let mut led: Vec<Led> =
             noises.iter().flat_map(|noise| self.led(&path, noise, &spots, base)).collect();
         led.sort_by(|a, b| b.value.total_cmp(&a.value));
-        let places = self.ranked(&spots, &led);
+        let mut places = self.ranked(&spots, &led);
         let nothing = Hypothesis {
             parts: vec![],
             theta: self.model.theta.clone(),
@@ -85,6 +85,13 @@ impl Predictor {
             fitted.extend(self.fitted(&path, &spots, place));
         }
         let sets = self.weighed(&nothing, fitted, &spots);
+        // an exact fit knows better than a curve on the old path
+        for place in &mut places {
+            let own = sets.iter().filter(|set| set.is_at(&place.into, place.of.as_deref()));
+            let exact = own.map(|set| set.log_odds).fold(f64::NEG_INFINITY, f64::max);
+            place.log_evidence = place.log_evidence.max(exact);
+        }
+        places.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
         Ok(RankedPlaces { noise: null.noise, log_likelihood: null.log_likelihood, places, sets })
     }
 

@@ -14,7 +14,8 @@ pub struct RankedPlace {
     pub into: String,
     /// Coordinate, absent where it depends on nothing.
     pub of: Option<String>,
-    /// Log Bayes factor of something there, its curve free and the noise its own, against nothing.
+    /// Log Bayes factor of something there, its curve free and the noise its own, against nothing; or
+    /// the log odds of its best laws, fitted exactly, where these are larger.
     pub log_evidence: f64,
     /// The most probable free curve: coordinate and force; empty where there is none.
     pub curve: Vec<(f64, f64)>,
@@ -58,6 +59,14 @@ impl RankedPlaces {
 }
 
 impl FittedLaws {
+    /// Whether the set is one of a place: its first law is there (an offset beside it comes last), or
+    /// that parameter moved.
+    pub(crate) fn is_at(&self, into: &str, of: Option<&str>) -> bool {
+        let there = |law: &Placed| law.into == into && law.of.as_deref() == of;
+        let moved = |(name, _): &(String, f64)| of.is_none() && name == into;
+        self.laws.first().is_some_and(there) || self.parameters.iter().any(moved)
+    }
+
     /// The system with these laws behind its own effects, moved parameters apart.
     pub fn extends(&self, system: &System) -> System {
         let mut extended = system.clone();

@@ -1,6 +1,5 @@
 //! `look --model`: the missing force of every channel, in words, as JSON, as a page.
 
-use super::refusal::{At, refused};
 use super::{MODEL, record, run, scratch};
 
 const TRUTH: &str = "sampling_time = 0.1
@@ -29,6 +28,4 @@ fn look_shows_the_missing_force_and_what_explains_it() {
     assert!(told.out.contains("force: ") && told.out.contains("explained by p "), "{}", told.out);
     let page = std::fs::read_to_string(folder.join("seen/look.html")).unwrap();
     assert!(page.contains("<svg") && !page.contains("<script src"));
-    let at = At { file: "", line: 0, column: 0, key: "--model" };
-    refused(&folder, "look --data d.csv", "input", at, &["--model FILE"]);
 }
