@@ -201,6 +201,17 @@ test("it prints, and without scripts it shows everything that does not move", as
   const pdf = await page.print();
   assert.equal(pdf.subarray(0, 5).toString(), "%PDF-");
   assert.ok(pdf.length > 20000, `${pdf.length} bytes`);
+  // still pictures are printed, but of a figure that was zoomed what it shows
+  const printed = await page.ask(() => {
+    document.querySelector("figure:has(.strip) .plot").dispatchEvent(new KeyboardEvent("keydown", { key: "+" }));
+    dispatchEvent(new Event("beforeprint"));
+    const touched = [...document.querySelectorAll(".touched figcaption")].map((caption) => caption.textContent);
+    const ink = getComputedStyle(document.documentElement).getPropertyValue("--card");
+    dispatchEvent(new Event("afterprint"));
+    return { touched, ink };
+  });
+  assert.deepEqual(printed.touched, ["y over time", "Residual of y: measured minus simulated", "Input u"]);
+  assert.equal(printed.ink, "#fff");
   await page.close();
   const bare = await browser.open(path("demo"), { scripts: false });
   const text = readFileSync(path("demo"), "utf8");

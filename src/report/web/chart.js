@@ -20,7 +20,7 @@ class Chart {
     this.whole = spec.x.names?.length
       ? [0.5, spec.x.names.length + 0.5]
       : widened(whole, dots ? 0.02 : 0, this.logX);
-    this.view = view ?? this.whole;
+    this.view = this.begun = view ?? this.whole;
     this.touched = false;
     /** Told when the range or what is switched on changes: links.js. */
     this.onView = this.onToggle = () => {};
@@ -207,7 +207,7 @@ class Chart {
   show(view, linked = true) {
     const [low, high] = this.clamped(view);
     this.view = [low, high];
-    this.touched = low !== this.whole[0] || high !== this.whole[1];
+    this.touched ||= low !== this.begun[0] || high !== this.begun[1];
     this.apply();
     if (linked) this.onView(this.view);
   }

@@ -65,7 +65,7 @@ function start() {
   addEventListener("beforeprint", () => {
     document.documentElement.classList.add("printed");
     document.querySelectorAll("details").forEach((part) => (part.open = true));
-    charts.forEach((chart) => chart.figure.classList.toggle("touched", chart.touched && !chart.spec.view));
+    charts.forEach((chart) => chart.figure.classList.toggle("touched", chart.touched));
     redraw();
   });
   addEventListener("afterprint", () => {
