@@ -8,7 +8,7 @@ use super::distortion::distortion;
 use super::error::DiagnoseError;
 use super::faults::{Fault, coarse, flipped, retimed, strike};
 use super::finding::{Finding, RecordFacts, Track};
-use super::library::Allowed;
+use super::library::{Allowed, Method};
 use super::note::Note;
 use super::overlap::refuse_overlap;
 use super::prepared::{Prepared, windows};
@@ -120,6 +120,14 @@ impl<'a> Diagnosis<'a> {
     #[must_use]
     pub fn init(mut self, init: Init) -> Self {
         self.init = init;
+        self
+    }
+
+    /// Searches by posterior probabilities instead of step by step.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn by_posterior(mut self, yes: bool) -> Self {
+        self.allowed.method = if yes { Method::Posterior } else { Method::Stepwise };
         self
     }
 

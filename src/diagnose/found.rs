@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use super::candidate::Candidate;
+use super::limits::limited;
 use super::problem::{Added, Model};
 use super::screen::Screen;
 use super::search::Search;
@@ -17,12 +18,34 @@ pub(crate) struct Slot {
     /// Score of the model with it against that without it, on the part that chooses; 0 where the
     /// two were not compared.
     pub score: f64,
+    /// How probable it is, where that was worked out.
+    pub belief: Option<Belief>,
+}
+
+/// Probabilities of one cause.
+#[derive(Debug, Clone)]
+pub(crate) struct Belief {
+    /// That this law is at work at this place.
+    pub law: f64,
+    /// That any law is.
+    pub place: f64,
+    /// That each member of the set is, the headline first.
+    pub members: Vec<f64>,
+}
+
+/// A cause that was taken back: samples that were not fitted are more probable without it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Withdrawn {
+    /// Effect, into, of.
+    pub cause: (String, String, Option<String>),
+    /// Odds against it, as a natural logarithm.
+    pub against: f64,
 }
 
 impl Slot {
     /// A cause that was compared with no other.
     pub fn of(cause: &Arc<Candidate>) -> Self {
-        Self { set: vec![(cause.clone(), 1.0)], others: vec![], score: 0.0 }
+        Self { set: vec![(cause.clone(), 1.0)], others: vec![], score: 0.0, belief: None }
     }
 }
 
@@ -42,6 +65,10 @@ pub(crate) struct Found {
     pub full: bool,
     /// Whether it was given up, because its rival was better.
     pub given_up: bool,
+    /// Probability that nothing is wrong, where that was worked out.
+    pub nothing: Option<f64>,
+    /// Causes that were taken back.
+    pub withdrawn: Vec<Withdrawn>,
 }
 
 /// A cause that a search begins with.
@@ -65,7 +92,9 @@ impl Search<'_, '_> {
     /// named, the last of them left out as long as the model goes nowhere with it.
     pub(super) fn beginning(&mut self, start: Model) -> (Model, Vec<Slot>) {
         let mut slots = vec![];
-        let mut from = self.limited(start, &mut slots);
+        let bare = start.added.len();
+        let mut from = limited(self.problem, self.nominal, self.allowed, self.most, start);
+        slots.extend(from.added[bare..].iter().map(|added| Slot::of(&added.cause)));
         for Begun { added, slot } in std::mem::take(&mut self.begun) {
             from.added.push(added);
             slots.push(slot);

@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use super::candidate::Candidate;
-use super::found::Slot;
-use super::library::library;
-use super::problem::Model;
-use super::search::Search;
+use super::library::{Allowed, library};
+use super::nominal::Nominal;
+use super::problem::{Model, Problem};
 
 /// Samples at a limit, at least, to call it one.
 const COUNT: usize = 8;
@@ -61,24 +60,26 @@ fn known_limits(
     Some((Arc::new(cause), vec![low, high]))
 }
 
-impl Search<'_, '_> {
-    /// Puts what the instruments cannot show into a model before anything is searched.
-    pub(super) fn limited(&self, start: Model, slots: &mut Vec<Slot>) -> Model {
-        let mut model = start;
-        let outputs = self.problem.base.signals.outputs.clone();
-        for (o, signal) in outputs.iter().enumerate().filter(|_| self.most > 0) {
-            let at = limits(&self.problem.y[o], &self.problem.known[o]);
-            if !(at.0.is_finite() || at.1.is_finite()) {
-                continue;
-            }
-            let candidates = library(self.problem, self.nominal, &model, vec![], self.allowed);
-            if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
-                model = model.with(&cause, knobs);
-                slots.push(Slot::of(&cause));
-            }
+/// A model with what the instruments cannot show, before anything is searched.
+pub(super) fn limited(
+    problem: &Problem<'_>,
+    nominal: &Nominal,
+    allowed: &Allowed,
+    most: usize,
+    start: Model,
+) -> Model {
+    let mut model = start;
+    for (o, signal) in problem.base.signals.outputs.iter().enumerate().filter(|_| most > 0) {
+        let at = limits(&problem.y[o], &problem.known[o]);
+        if !(at.0.is_finite() || at.1.is_finite()) {
+            continue;
         }
-        model
+        let candidates = library(problem, nominal, &model, vec![], allowed);
+        if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
+            model = model.with(&cause, knobs);
+        }
     }
+    model
 }
 
 #[cfg(test)]

@@ -2,8 +2,11 @@
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
+use super::evidence::Whitener;
 use super::nuisance::{Key, Nuisance, set};
-use super::problem::{Grain, Job, Model, Part, Problem, Span};
+use super::problem::{Grain, Job, Model, Part, Problem, Simulated, Span};
 use super::restart::restarted;
 use super::together::Together;
 use crate::optimise::{Levenberg, Settings};
@@ -77,7 +80,7 @@ pub(crate) fn refit(
     models: &[Model],
     how: Refit,
 ) -> Vec<Option<Fitted>> {
-    let mut fitted = once(problem, nuisance, models, how);
+    let mut fitted = once(problem, nuisance, models, how, &|_, r| r);
     if nuisance.segments < MANY {
         return fitted;
     }
@@ -89,7 +92,7 @@ pub(crate) fn refit(
         let moved = of.into_iter().zip(moved).filter_map(|(m, moved)| Some((m, moved?)));
         let (of, moved): (Vec<usize>, Vec<Model>) = moved.unzip();
         open.clear();
-        for (m, again) in of.into_iter().zip(once(problem, nuisance, &moved, how)) {
+        for (m, again) in of.into_iter().zip(once(problem, nuisance, &moved, how, &|_, r| r)) {
             let (Some(again), Some(before)) = (again, &fitted[m]) else { continue };
             let (sum, least) = (again.squares(), before.squares());
             if sum < WORTH * least {
@@ -106,12 +109,25 @@ pub(crate) fn refit(
     fitted
 }
 
-/// One fit of each, to the minimum that is next.
+/// Fits many models at once, each to the minimum that is next, in the metric of its own disturbance:
+/// residuals and columns of the fits are whitened.
+pub(crate) fn refit_whitened(
+    problem: &Problem<'_>,
+    nuisance: &Nuisance,
+    models: &[Model],
+    whiteners: &[Arc<dyn Whitener>],
+    how: Refit,
+) -> Vec<Option<Fitted>> {
+    once(problem, nuisance, models, how, &|m, r| whiteners[m].whiten(&r))
+}
+
+/// One fit of each, to the minimum that is next, of filtered residuals.
 fn once(
     problem: &Problem<'_>,
     nuisance: &Nuisance,
     models: &[Model],
     how: Refit,
+    filter: &(dyn Fn(usize, Vec<f64>) -> Vec<f64> + Sync),
 ) -> Vec<Option<Fitted>> {
     let (part, span) = (how.part(), how.span());
     let residuals = problem.samples(part).count() * problem.y.len();
@@ -157,17 +173,20 @@ fn once(
         if jobs.is_empty() {
             break;
         }
-        let mut answers = problem.run(&jobs, span).into_iter();
+        let of = counts.iter().enumerate().flat_map(|(m, &count)| std::iter::repeat_n(m, count));
+        let residual = |(y, m): (Simulated, usize)| {
+            let r = problem.residual(&y?, part);
+            r.iter().all(|v| v.is_finite()).then(|| filter(m, r))
+        };
+        let answers: Vec<(Simulated, usize)> = problem.run(&jobs, span).into_iter().zip(of).collect();
+        let answers: Vec<_> = answers.into_par_iter().map(residual).collect();
+        let mut answers = answers.into_iter();
         for ((keys, run), count) in runs.iter_mut().zip(counts) {
             if count == 0 {
                 run.absorb(vec![None]);
                 continue;
             }
-            let residual = |y: Option<Arc<Vec<Vec<f64>>>>| {
-                let r = problem.residual(&y?, part);
-                r.iter().all(|v| v.is_finite()).then_some(r)
-            };
-            let mut own: Vec<_> = answers.by_ref().take(count).map(residual).collect();
+            let mut own: Vec<_> = answers.by_ref().take(count).collect();
             if run.is_starting() {
                 let columns = own.split_off(1);
                 run.absorb(own);

@@ -1,13 +1,11 @@
 //! Sizes and shapes that a candidate is tried at, before it is refitted.
 
-use super::candidate::Candidate;
+use super::posterior::starts::{self, RUNG, ladder};
 use super::probes::with_candidate;
 use super::problem::{Grain, Job, Model, Part, Problem, Span};
 use super::screen::{Scored, Screen};
 use crate::statistics::{dot, project};
 
-/// From one size to the next.
-const RUNG: f64 = 2.5;
 /// Candidates whose sizes are looked at between the rungs too.
 const LEADING: usize = 15;
 
@@ -88,87 +86,7 @@ pub(super) fn scan_all(
     keep(finer, jobs_of_finer).into_iter().map(|(index, size, _)| (index, size)).collect()
 }
 
-/// Sizes from a small effect upwards, of every sign allowed.
-fn ladder(cause: &Candidate, probe: f64, rungs: i32) -> Vec<f64> {
-    let knob = cause.linear[0];
-    let (min, max) = cause.bounds(knob);
-    let smallest = 0.4 * probe.abs();
-    let signs: &[f64] = match cause.sign {
-        s if s > 0.0 => &[1.0],
-        s if s < 0.0 => &[-1.0],
-        _ => &[1.0, -1.0],
-    };
-    let mut sizes = vec![];
-    for sign in signs {
-        for rung in 0..rungs {
-            let size = sign * smallest * RUNG.powi(rung);
-            if size >= min && size <= max {
-                sizes.push(size);
-            }
-        }
-    }
-    sizes
-}
-
 /// Starting knobs for a refit of one candidate.
 pub(super) fn starting_points(scored: &Scored, scanned: Option<f64>) -> Vec<Vec<f64>> {
-    let cause = &scored.cause;
-    let mut points = vec![];
-    if cause.blended() || cause.thresholds && cause.linear.len() == 1 {
-        for knobs in thresholds(cause) {
-            if cause.blended() {
-                points.push(knobs);
-            } else {
-                for factor in [1.0, 0.4] {
-                    points.push(cause.sized(&knobs, &[factor * scored.estimate[0]]));
-                }
-            }
-        }
-    }
-    if !cause.blended() {
-        let start = &cause.starts[scored.start];
-        for factor in [1.0, 0.4] {
-            let values: Vec<f64> = scored.estimate.iter().map(|v| factor * v).collect();
-            points.push(cause.sized(start, &values));
-        }
-        if let Some(size) = scanned {
-            points.push(cause.sized(start, &[size]));
-        }
-        if cause.linear.len() == 1 && !cause.thresholds {
-            for start in cause.starts.iter().take(7) {
-                for size in ladder(cause, scored.probe, 5) {
-                    points.push(cause.sized(start, &[size]));
-                }
-            }
-        }
-    }
-    points
-}
-
-/// A finer grid of the thresholds of a candidate.
-fn thresholds(cause: &Candidate) -> Vec<Vec<f64>> {
-    let mut grid = vec![];
-    let start = &cause.starts[0];
-    let span = |i: usize| (cause.min[i], cause.max[i]);
-    let symmetric = cause.refine.len() == 2 && start[cause.refine[0]] < 0.0;
-    let Some(&last) = cause.refine.last() else { return vec![start.clone()] };
-    let (low, high) = span(last);
-    let positive = symmetric || cause.card.knobs[last].min >= 0.0;
-    for i in 0..12 {
-        let share = f64::from(i) / 11.0;
-        let value = if positive {
-            let top = if symmetric { high.max(-cause.min[cause.refine[0]]) } else { high };
-            let bottom = (0.02 * top).max(low.max(0.0));
-            bottom * (0.98 * top / bottom.max(1e-300)).powf(share)
-        } else {
-            low + (high - low) * (0.02 + 0.96 * share)
-        };
-        let mut knobs = start.clone();
-        knobs[last] = value;
-        if symmetric {
-            knobs[cause.refine[0]] = -value;
-        }
-        grid.push(knobs);
-    }
-    grid
+    starts::points(&scored.cause, scored.start, &scored.estimate, scored.probe, scanned)
 }

@@ -292,6 +292,18 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         self.tell(1.0, "done");
         let spikes = self.problem.spikes();
-        Some(Found { model, slots, first, last, dependence, spikes, full, given_up })
+        let (nothing, withdrawn) = (None, vec![]);
+        Some(Found {
+            model,
+            slots,
+            first,
+            last,
+            dependence,
+            spikes,
+            full,
+            given_up,
+            nothing,
+            withdrawn,
+        })
     }
 }

@@ -150,6 +150,7 @@ impl Search<'_, '_> {
             set: named.iter().map(|&i| (trials[i].cause.clone(), gain(&trials[i]))).collect(),
             others: distinct,
             score: 0.0,
+            belief: None,
         };
         (named[0], slot)
     }
@@ -169,7 +170,7 @@ impl Search<'_, '_> {
         for _ in 0..slots.len() {
             let rest = model.without(0);
             let without = self.fitted(rest.clone());
-            let Slot { set, others, score } = slots.remove(0);
+            let Slot { set, others, score, .. } = slots.remove(0);
             let present = model.added[0].clone();
             // a single cause is asked for against all others, one of several against its set,
             // which the swaps have brought up to date
@@ -197,7 +198,7 @@ impl Search<'_, '_> {
                     *model = trials.swap_remove(headline).model;
                 }
                 _ => {
-                    slots.push(Slot { set, others, score });
+                    slots.push(Slot { set, others, score, belief: None });
                     *model = joined;
                 }
             }

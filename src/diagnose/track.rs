@@ -8,9 +8,10 @@ use super::dependence::{DEPENDS, dependence};
 use super::finding::{Moved, Track};
 use super::finished::{Finished, moved_together};
 use super::found::{Found, Slot};
-use super::library::Allowed;
+use super::library::{Allowed, Method};
 use super::nominal::Nominal;
 use super::nuisance::Nuisance;
+use super::posterior::{self, Searched};
 use super::precision::Precision;
 use super::problem::{Grain, Model, Part, Problem};
 use super::refit::{Fitted, MANY, Refit, refit};
@@ -42,9 +43,23 @@ pub(crate) struct Tracks<'a, 'b> {
 impl<'a, 'b> Tracks<'a, 'b> {
     /// Searches both tracks; the chosen one comes first.
     pub fn run(mut self) -> Option<(Finished, Option<Finished>)> {
+        if self.allowed.method == Method::Posterior {
+            return self.by_posterior();
+        }
         let (chosen, other) = self.both()?;
         let chosen = self.off_the_ridge(chosen)?;
         Some((self.doubting(chosen), other))
+    }
+
+    /// The search by posterior probabilities.
+    fn by_posterior(mut self) -> Option<(Finished, Option<Finished>)> {
+        let (nominal, allowed, most, watch) = (self.nominal, self.allowed, self.most, self.watch);
+        let Searched { found, free, nuisance } =
+            posterior::search(self.problem, nominal, allowed, most, self.start, watch)?;
+        let track = if free { Track::ParametersFree } else { Track::ParametersTrusted };
+        let chosen = self.finish(track, found, nuisance)?;
+        let chosen = self.off_the_ridge(chosen)?;
+        Some((self.doubting(chosen), None))
     }
 
     fn both(&mut self) -> Option<(Finished, Option<Finished>)> {
@@ -194,6 +209,8 @@ impl<'a, 'b> Tracks<'a, 'b> {
             spikes,
             full: false,
             given_up: false,
+            nothing: None,
+            withdrawn: vec![],
         };
         let finished = self.finish(Track::ParametersFree, found, free.clone())?;
         if finished.moved.is_empty() {

@@ -1,0 +1,78 @@
+//! Fits of many models at once, each in the disturbance of its own, and their posteriors.
+
+use std::sync::Arc;
+
+use rayon::prelude::*;
+
+use super::beam::Fit;
+use crate::evidence::{NoiseModel, Whitener, occam, price, width};
+use crate::nuisance::{Key, Nuisance, get};
+use crate::optimise::Settings;
+use crate::problem::{Grain, Model, Problem};
+use crate::refit::{Fitted, Refit, refit_whitened};
+
+/// A model to be fitted, and the disturbance to weigh its residual by.
+#[derive(Debug, Clone)]
+pub(super) struct Wish {
+    pub model: Model,
+    pub noise: Arc<dyn Whitener>,
+}
+
+/// What fits are made and judged with.
+pub(super) struct Judge<'a, 'b> {
+    pub problem: &'a Problem<'b>,
+    pub nuisance: &'a Nuisance,
+    /// Whether all parameters may move.
+    pub free: bool,
+    pub disturbance: &'a dyn NoiseModel,
+    /// Names of the library.
+    pub names: usize,
+}
+
+impl Judge<'_, '_> {
+    /// Fits all; each is judged in the disturbance that suits what it leaves. What cannot be
+    /// simulated is left out.
+    pub fn fit(&self, wishes: &[Wish], iterations: usize) -> Vec<Fit> {
+        let settings = Settings { iterations, tolerance: 1e-5, difference: 2e-3 };
+        let how = Refit { settings, grain: Grain::Coarse, whole: false };
+        let models: Vec<Model> = wishes.iter().map(|wish| wish.model.clone()).collect();
+        let noises: Vec<_> = wishes.iter().map(|wish| wish.noise.clone()).collect();
+        let fitted = refit_whitened(self.problem, self.nuisance, &models, &noises, how);
+        let both: Vec<_> = fitted.into_iter().zip(&noises).collect();
+        both.into_par_iter().filter_map(|(fitted, by)| self.judged(fitted?, by.as_ref())).collect()
+    }
+
+    /// The posterior of a model that was fitted in a metric.
+    fn judged(&self, fitted: Fitted, by: &dyn Whitener) -> Option<Fit> {
+        let residual = by.colour(&fitted.residuals);
+        let estimated = self.disturbance.estimate(&residual);
+        let Fitted { model, keys, columns, residuals } = fitted;
+        let widths: Vec<f64> =
+            keys.iter().map(|&key| width(self.problem, self.nuisance, &model, key)).collect();
+        let squares: f64 = residuals.iter().map(|r| r * r).sum();
+        let variance = squares / residuals.len().max(1) as f64;
+        let prior = self.expected(&model, &keys) - price(&model, self.free, self.names);
+        let fit = Fit {
+            occam: occam(&columns, &widths, variance),
+            likelihood: estimated.log_likelihood,
+            noise: estimated.whitener,
+            free: self.free,
+            model,
+            residual,
+            prior,
+        };
+        fit.posterior().is_finite().then_some(fit)
+    }
+
+    /// Logarithm of the Gaussian priors of parameters, initial states and the numbers of curves.
+    fn expected(&self, model: &Model, keys: &[Key]) -> f64 {
+        let one = |&key: &Key| {
+            let prior = match key {
+                Key::Knob(..) => None,
+                _ => self.nuisance.unknown(self.problem, model, key).prior,
+            };
+            prior.map_or(0.0, |(centre, deviation)| ((get(model, key) - centre) / deviation).powi(2))
+        };
+        -0.5 * keys.iter().map(one).sum::<f64>()
+    }
+}

@@ -1,0 +1,34 @@
+//! The search: which causes, with what probability.
+//!
+//! ```text
+//! model <- nothing                                       fitted with its disturbance as a nuisance
+//! repeat  dictionary <- tangents and secants of every candidate about model
+//!         moves <- take out 0 to 3 causes, put in the best one or two (one matrix of products)
+//!         fit the leading moves, racing; model <- the most probable of all that were fitted
+//! until nothing is promising
+//! fit the neighbours of the model: same place, same law, same coordinate; repeat if one is better
+//! the same with parameters free, where that is near; laws without a name, where something is left
+//! ```
+//!
+//! Everything is judged by the posterior alone (`evidence`); the thresholds stand in `criteria`.
+
+pub(crate) mod starts;
+
+mod beam;
+mod begin;
+mod chain;
+mod contribution;
+mod dictionary;
+mod fits;
+#[cfg(test)]
+mod fixture;
+mod metric;
+mod moves;
+mod nameless;
+mod neighbours;
+mod run;
+mod study;
+mod told;
+mod veto;
+
+pub(crate) use run::{Searched, search};

@@ -1,0 +1,162 @@
+//! The search from end to end: chains with parameters held and free, laws without a name, the veto.
+
+use std::sync::Arc;
+
+use super::beam::Fit;
+use super::chain::chain;
+use super::contribution::tangents;
+use super::fits::Wish;
+use super::nameless::{left, nameless};
+use super::study::Study;
+use super::told::{ranking, slots};
+use super::veto::vetoed;
+use crate::candidate::Wire;
+use crate::dependence::{DEPENDS, dependence};
+use crate::evidence::NoiseModel;
+use crate::found::Found;
+use crate::library::Allowed;
+use crate::limits::limited;
+use crate::nominal::Nominal;
+use crate::nuisance::Nuisance;
+use crate::problem::{Grain, Model, Part, Problem};
+use crate::screen::Screen;
+use crate::statistics::add_to_basis;
+use crate::watch::Watch;
+
+/// Iterations of the model without causes, and of a model with parameters the other way.
+const ITERATIONS: usize = 8;
+/// Distance of the best with free parameters from the best within which these are searched too.
+const NEAR: f64 = 10.0;
+/// Causes beside held parameters from which on wrong parameters are a rival.
+const SEVERAL: usize = 3;
+/// Sets whose parameters are let go or put back: so many within so much of the best.
+const TOGGLED: (usize, f64) = (6, 5.0);
+const POLISHED: f64 = 8.0;
+
+/// What a search ended with: causes, whether parameters are free, and what moves beside causes.
+pub(crate) struct Searched {
+    pub found: Found,
+    pub free: bool,
+    pub nuisance: Nuisance,
+}
+
+/// Searches from a model of the baseline; `None` where it cannot be simulated.
+pub(crate) fn search(
+    problem: &mut Problem<'_>,
+    nominal: &Nominal,
+    allowed: &Allowed,
+    most: usize,
+    start: &Model,
+    watch: &dyn Watch,
+) -> Option<Searched> {
+    watch.tell(0.0, "simulating the baseline");
+    if let Some(y) = problem.simulate(start, Grain::Coarse) {
+        problem.flag_spikes(&y);
+    }
+    let start = limited(problem, nominal, allowed, most, start.clone());
+    problem.recorrect(&start);
+    let y = problem.simulate(&start, Grain::Coarse)?;
+    let dependence = dependence(problem, nominal, &y);
+    problem.rescale(&y);
+    let mut study = Study::new(problem, nominal, allowed, most, watch);
+    empty(&mut study, &start, &y);
+    let first = study.beam.best_of(false)?.clone();
+    study.stand_on(&first.model);
+    let mut screen = None;
+    if most > 0 {
+        watch.tell(0.05, "screening candidates");
+        chain(&mut study, false);
+        screen = screened(&study, &first);
+        parameters(&mut study);
+        nameless(&mut study);
+    }
+    watch.tell(0.95, "checking what was named");
+    Some(told(study, screen, dependence))
+}
+
+/// The model without causes, parameters held and free.
+fn empty(study: &mut Study<'_, '_>, start: &Model, y: &Arc<Vec<Vec<f64>>>) {
+    let noise = study.disturbance.white(&study.problem.residual(y, Part::Fit));
+    let wish = [Wish { model: start.clone(), noise }];
+    study.fit_and_keep(false, &wish, ITERATIONS);
+    if !study.free.free.is_empty() {
+        study.fit_and_keep(true, &wish, ITERATIONS);
+    }
+    study.polish(POLISHED);
+}
+
+/// The chain with parameters free, where that may be as probable.
+fn parameters(study: &mut Study<'_, '_>) {
+    if study.free.free.is_empty() || study.watch.stopped() {
+        return;
+    }
+    toggle(study);
+    let best = |free: bool| study.beam.best_of(free);
+    let (Some(held), Some(free)) = (best(false), best(true)) else { return };
+    let near = free.posterior() > held.posterior() - NEAR;
+    let many = held.causes() >= SEVERAL;
+    let model = study.beam.best().map(|fit| fit.model.clone());
+    if many || near || model.is_some_and(|model| left(study, &model) > DEPENDS) {
+        study.watch.tell(0.5, "letting parameters move");
+        let model = study.beam.best_of(true).map(|fit| fit.model.clone());
+        if let Some(model) = model {
+            study.stand_on(&model);
+        }
+        chain(study, true);
+        toggle(study);
+    }
+}
+
+/// The leading sets with their parameters the other way.
+fn toggle(study: &mut Study<'_, '_>) {
+    let mut wishes: [Vec<Wish>; 2] = [vec![], vec![]];
+    for fit in study.beam.within(TOGGLED.1) {
+        let mut model = fit.model.clone();
+        match fit.free {
+            false => model.added.retain(|a| !matches!(a.cause.wire, Wire::Parameter(_))),
+            true => model.theta = study.problem.base.signals.theta(),
+        }
+        let other = Fit { model: model.clone(), free: !fit.free, ..fit.clone() };
+        let count = wishes[0].len() + wishes[1].len();
+        if study.beam.get(&other.key()).is_none() && count < TOGGLED.0 {
+            wishes[usize::from(other.free)].push(Wish { model, noise: fit.noise.clone() });
+        }
+    }
+    for (free, wishes) in [(false, &wishes[0]), (true, &wishes[1])] {
+        study.fit_and_keep(free, wishes, ITERATIONS);
+    }
+    study.polish(POLISHED);
+}
+
+/// The ranking of the dictionary against the model without causes.
+fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
+    let nuisance = study.nuisance(first.free);
+    let mut basis = vec![];
+    for (_, column) in tangents(study.problem, nuisance, &first.model, &first.residual) {
+        add_to_basis(&mut basis, column);
+    }
+    (!study.items.is_empty())
+        .then(|| ranking(study.problem, &study.items, &first.residual, basis))
+}
+
+/// The headline after the veto, with its look-alikes.
+fn told(mut study: Study<'_, '_>, first: Option<Screen>, dependence: f64) -> Searched {
+    let headline = study.beam.headline().cloned();
+    let headline = headline.expect("the model without causes was fitted");
+    let (headline, withdrawn) = vetoed(&mut study, headline);
+    let nothing = study.beam.probability(|fit| !fit.free && fit.causes() == 0);
+    let found = Found {
+        slots: slots(study.problem, &study.beam, &headline),
+        model: headline.model.clone(),
+        first,
+        last: None,
+        dependence,
+        spikes: study.problem.spikes(),
+        full: headline.causes() >= study.most && study.most > 0,
+        given_up: false,
+        nothing: Some(nothing),
+        withdrawn,
+    };
+    let nuisance = study.nuisance(headline.free).clone();
+    Searched { found, free: headline.free, nuisance }
+}
