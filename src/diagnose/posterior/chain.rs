@@ -2,6 +2,7 @@
 //! the neighbours of the best have been fitted too.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::beam::{Fit, SetKey};
@@ -18,7 +19,7 @@ use crate::nuisance::Key;
 use crate::statistics::add_to_basis;
 
 /// Rounds at most.
-const ROUNDS: usize = 12;
+pub(super) const ROUNDS: usize = 12;
 /// Models fitted per round; fits that go on after two iterations whatever they are.
 const FITTED: usize = 20;
 const RACERS: usize = 6;
@@ -60,10 +61,11 @@ impl Ground {
     }
 }
 
-/// Runs a chain with parameters held or free, from the best model of that kind.
-pub(super) fn chain(study: &mut Study<'_, '_>, free: bool) {
+/// Runs rounds of a chain with parameters held or free, from the best model of that kind; round 0 makes
+/// the dictionary, later ones go on with it.
+pub(super) fn chain(study: &mut Study<'_, '_>, free: bool, rounds: Range<usize>) {
     let mut before: Option<SetKey> = None;
-    for round in 0..ROUNDS {
+    for round in rounds {
         if study.watch.stopped() {
             return;
         }
@@ -105,7 +107,9 @@ fn one_round(study: &mut Study<'_, '_>, best: Fit, round: usize, last: bool) -> 
                 moves = ground.standing(study).moves(&items, &metrics, true).moves;
             }
             let chosen = neighbours(&ground.fit, moves, &items, &study.beam, &study.settled);
-            study.settled.extend(chosen.iter().map(|m| m.leads_to(&ground.fit, &items)));
+            let keys: Vec<SetKey> = chosen.iter().map(|m| m.leads_to(&ground.fit, &items)).collect();
+            study.tried.extend(keys.iter().cloned());
+            study.settled.extend(keys);
             attempt(study, &ground, &chosen, &items, false);
             study.items = items;
             return false;

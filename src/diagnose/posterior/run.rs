@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::beam::Fit;
-use super::chain::chain;
+use super::chain::{ROUNDS, chain};
 use super::contribution::tangents;
 use super::fits::Wish;
 use super::nameless::{left, nameless};
@@ -65,9 +65,9 @@ pub(crate) fn search(
     let mut screen = None;
     if most > 0 {
         watch.tell(0.05, "screening candidates");
-        chain(&mut study, false);
+        chain(&mut study, false, 0..1);
         screen = screened(&study, &first);
-        parameters(&mut study);
+        families(&mut study);
         nameless(&mut study);
     }
     watch.tell(0.95, "checking what was named");
@@ -85,26 +85,57 @@ fn empty(study: &mut Study<'_, '_>, start: &Model, y: &Arc<Vec<Vec<f64>>>) {
     study.polish(POLISHED);
 }
 
-/// The chain with parameters free, where that may be as probable.
-fn parameters(study: &mut Study<'_, '_>) {
-    if study.free.free.is_empty() || study.watch.stopped() {
+/// Whether letting all parameters move is more probable than what is known with parameters held.
+fn is_behind(study: &Study<'_, '_>) -> bool {
+    let best = |free: bool| study.beam.best_of(free).map(Fit::posterior);
+    best(true).zip(best(false)).is_some_and(|(free, held)| free > held)
+}
+
+/// The chains with parameters held and free, the more probable family first: where parameters are
+/// wrong, laws that stand in for them would be searched in vain.
+fn families(study: &mut Study<'_, '_>) {
+    if study.free.free.is_empty() {
+        chain(study, false, 1..ROUNDS);
         return;
     }
-    toggle(study);
-    let best = |free: bool| study.beam.best_of(free);
-    let (Some(held), Some(free)) = (best(false), best(true)) else { return };
-    let near = free.posterior() > held.posterior() - NEAR;
-    let many = held.causes() >= SEVERAL;
-    let model = study.beam.best().map(|fit| fit.model.clone());
-    if many || near || model.is_some_and(|model| left(study, &model) > DEPENDS) {
-        study.watch.tell(0.5, "letting parameters move");
-        let model = study.beam.best_of(true).map(|fit| fit.model.clone());
-        if let Some(model) = model {
+    let parameters_first = is_behind(study);
+    if parameters_first {
+        free_chain(study);
+        let best = |free: bool| study.beam.best_of(free).map(Fit::posterior);
+        let near = best(false).zip(best(true)).is_some_and(|(held, free)| held > free - NEAR);
+        if !near && !study.beam.best().is_some_and(|best| left(study, &best.model) > DEPENDS) {
+            return;
+        }
+        if let Some(model) = study.beam.best_of(false).map(|fit| fit.model.clone()) {
             study.stand_on(&model);
         }
-        chain(study, true);
+        chain(study, false, 0..ROUNDS);
         toggle(study);
+        return;
     }
+    chain(study, false, 1..ROUNDS);
+    toggle(study);
+    let (Some(held), Some(free)) = (study.beam.best_of(false), study.beam.best_of(true)) else {
+        return;
+    };
+    let near = free.posterior() > held.posterior() - NEAR;
+    let many = held.causes() >= SEVERAL;
+    let model = if near { &free.model } else { &held.model };
+    if many || near || left(study, model) > DEPENDS {
+        free_chain(study);
+    }
+}
+
+fn free_chain(study: &mut Study<'_, '_>) {
+    if study.watch.stopped() {
+        return;
+    }
+    study.watch.tell(0.5, "letting parameters move");
+    if let Some(model) = study.beam.best_of(true).map(|fit| fit.model.clone()) {
+        study.stand_on(&model);
+    }
+    chain(study, true, 0..ROUNDS);
+    toggle(study);
 }
 
 /// The leading sets with their parameters the other way.
