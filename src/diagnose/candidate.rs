@@ -90,6 +90,12 @@ impl Candidate {
         self.triple() == other.triple() && self.also_of == other.also_of
     }
 
+    /// Whether two candidates stand at the same place: the same channel and coordinate, both laws.
+    pub fn same_place(&self, other: &Self) -> bool {
+        let is_law = |c: &Self| matches!(c.wire, Wire::Stage(_)) && c.of.is_some();
+        is_law(self) && is_law(other) && self.into == other.into && self.of == other.of
+    }
+
     /// Whether it is blended in by a factor from 0 to 1, having no coefficient.
     pub fn blended(&self) -> bool {
         self.linear.is_empty()

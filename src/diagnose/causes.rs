@@ -98,8 +98,8 @@ impl Teller<'_, '_> {
             parts: cause.as_part(&values),
             parameters: values,
             p_value,
-            probability: None,
-            place_probability: None,
+            probability: slot.belief.as_ref().map(|belief| belief.law),
+            place_probability: slot.belief.as_ref().map(|belief| belief.place),
             error_removed: share,
             indistinguishable,
             runners_up,
@@ -244,9 +244,12 @@ fn alternatives(
         ..cause.alternative(share)
     });
     let as_data = |(c, gain): &(Arc<Candidate>, f64)| c.alternative(gain.clamp(0.0, 1.0) * share);
-    let members = slot.set.iter().filter(|(member, _)| !member.same_cause(cause));
+    let chances = slot.belief.iter().flat_map(|belief| &belief.members).copied().map(Some);
+    let chances = chances.chain(std::iter::repeat(None));
+    let members = slot.set.iter().zip(chances).filter(|((member, _), _)| !member.same_cause(cause));
+    let member = |(own, probability)| Alternative { probability, ..as_data(own) };
     // other laws before twins: where there are too many, twins are missed least
-    let mut alike: Vec<Alternative> = members.map(as_data).chain(twins).collect();
+    let mut alike: Vec<Alternative> = members.map(member).chain(twins).collect();
     let mut known = vec![cause.name()];
     alike.retain(|a: &Alternative| {
         let name = (a.effect.clone(), a.into.clone(), a.of.clone());

@@ -33,15 +33,6 @@ pub(crate) struct Belief {
     pub members: Vec<f64>,
 }
 
-/// A cause that was taken back: samples that were not fitted are more probable without it.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Withdrawn {
-    /// Effect, into, of.
-    pub cause: (String, String, Option<String>),
-    /// Odds against it, as a natural logarithm.
-    pub against: f64,
-}
-
 impl Slot {
     /// A cause that was compared with no other.
     pub fn of(cause: &Arc<Candidate>) -> Self {
@@ -65,10 +56,17 @@ pub(crate) struct Found {
     pub full: bool,
     /// Whether it was given up, because its rival was better.
     pub given_up: bool,
-    /// Probability that nothing is wrong, where that was worked out.
-    pub nothing: Option<f64>,
-    /// Causes that were taken back.
-    pub withdrawn: Vec<Withdrawn>,
+    /// What the posterior says beside, where it was worked out.
+    pub posterior: Option<Posterior>,
+}
+
+/// What the posterior says of all causes together.
+#[derive(Debug, Clone)]
+pub(crate) struct Posterior {
+    /// Probability that nothing is wrong.
+    pub nothing: f64,
+    /// Causes that were taken back: samples that were not fitted are more probable without them.
+    pub withdrawn: Vec<Added>,
 }
 
 /// A cause that a search begins with.

@@ -83,6 +83,7 @@ mod tensor;
 mod together;
 mod track;
 mod train;
+mod withdrawn;
 
 pub use crate::watch::Watch;
 pub use acts::ActsWhere;

@@ -178,7 +178,8 @@ fn once(
             let r = problem.residual(&y?, part);
             r.iter().all(|v| v.is_finite()).then(|| filter(m, r))
         };
-        let answers: Vec<(Simulated, usize)> = problem.run(&jobs, span).into_iter().zip(of).collect();
+        let answers: Vec<(Simulated, usize)> =
+            problem.run(&jobs, span).into_iter().zip(of).collect();
         let answers: Vec<_> = answers.into_par_iter().map(residual).collect();
         let mut answers = answers.into_iter();
         for ((keys, run), count) in runs.iter_mut().zip(counts) {

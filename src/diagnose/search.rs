@@ -292,18 +292,7 @@ impl<'a, 'b> Search<'a, 'b> {
         }
         self.tell(1.0, "done");
         let spikes = self.problem.spikes();
-        let (nothing, withdrawn) = (None, vec![]);
-        Some(Found {
-            model,
-            slots,
-            first,
-            last,
-            dependence,
-            spikes,
-            full,
-            given_up,
-            nothing,
-            withdrawn,
-        })
+        let posterior = None;
+        Some(Found { model, slots, first, last, dependence, spikes, full, given_up, posterior })
     }
 }

@@ -79,6 +79,7 @@ impl Teller<'_, '_> {
         let false_discovery = false_discovery(&causes);
         let structural = causes.iter().filter(|cause| !cause.is_data_fault()).count();
         causes.extend(self.outliers(chosen, from.firsts));
+        let withdrawn = self.withdrawn(chosen, test, &after)?;
         let gain = gain(&before, &after, &floors);
         let curves_only = causes.iter().all(|c| c.is_data_fault() || c.wording.shape.is_some());
         let verdict = match (structural, causes.len()) {
@@ -122,8 +123,12 @@ impl Teller<'_, '_> {
             causes,
             series: self.series(chosen, &y_before, curve),
             extended,
-            verdict_probability: None,
-            withdrawn: vec![],
+            verdict_probability: chosen.found.posterior.as_ref().and_then(|of| match verdict {
+                Verdict::NothingFound => Some(of.nothing),
+                Verdict::CausesFound => Some(1.0 - of.nothing),
+                _ => None,
+            }),
+            withdrawn,
             missing: vec![],
         })
     }

@@ -209,8 +209,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
             spikes,
             full: false,
             given_up: false,
-            nothing: None,
-            withdrawn: vec![],
+            posterior: None,
         };
         let finished = self.finish(Track::ParametersFree, found, free.clone())?;
         if finished.moved.is_empty() {

@@ -11,5 +11,5 @@ mod prior;
 mod whitener;
 
 pub(crate) use laplace::occam;
-pub(crate) use prior::{price, width};
-pub(crate) use whitener::{Estimated, NoiseModel, Stretches, Whitener};
+pub(crate) use prior::{Choices, price, width};
+pub(crate) use whitener::{NoiseModel, Stretches, Whitener};

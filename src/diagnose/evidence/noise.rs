@@ -52,8 +52,7 @@ impl Autoregressive {
             variances.push(variances[p - 1] * (1.0 - reflection * reflection));
             predictors.push(next);
         }
-        let criterion =
-            |p: usize| count * variances[p].ln() + p as f64 * count.max(2.0).ln();
+        let criterion = |p: usize| count * variances[p].ln() + p as f64 * count.max(2.0).ln();
         let order = (0..variances.len())
             .min_by(|&a, &b| criterion(a).total_cmp(&criterion(b)))
             .unwrap_or(0);

@@ -1,27 +1,59 @@
 //! Prior of a model's structure, and of its numbers.
 //!
-//! ln p(M) = -sum over causes (MORE + ln(names) + PER_NUMBER (numbers - 1)) - ALL_PARAMETERS where all
-//! parameters may move: spike and slab on every name of the library (Mitchell and Beauchamp, JASA 83,
-//! 1988). Coefficients are log-uniform over SIZES, shape knobs uniform over their range, parameters and
+//! ln p(M) = -sum over causes (MORE + ln(choices) + PER_NUMBER (numbers - 1)) - ALL_PARAMETERS where all
+//! parameters may move: spike and slab (Mitchell and Beauchamp, JASA 83, 1988). The first law at a place
+//! is chosen among all names of the library, a further one of the same place among its laws. Coefficients are log-uniform over SIZES, shape knobs uniform over their range, parameters and
 //! initial states Gaussian.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 use crate::candidate::Candidate;
 use crate::criteria::{ALL_PARAMETERS, MORE, PER_NUMBER, SIZES, UNNAMED};
 use crate::nuisance::{Key, Nuisance, get};
-use crate::problem::{Model, Problem};
+use crate::problem::{Added, Model, Problem};
 
-/// What a model takes: the negative logarithm of its prior, `names` being those of the library.
-pub(crate) fn price(model: &Model, free: bool, names: usize) -> f64 {
-    let causes = model.added.iter().skip(model.known());
-    let all: f64 = causes.map(|added| of_cause(&added.cause, names)).sum();
+/// How much there is to choose from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Choices {
+    /// Names of the library: a law at a place.
+    pub names: usize,
+    /// Laws of one place, at most.
+    pub laws: usize,
+}
+
+impl Choices {
+    /// Those of a library.
+    pub fn of(library: &[Arc<Candidate>]) -> Self {
+        let names: BTreeSet<_> = library.iter().map(|c| c.name()).collect();
+        let mut laws: BTreeMap<_, BTreeSet<&str>> = BTreeMap::new();
+        for cause in library {
+            laws.entry((&cause.into, &cause.of)).or_default().insert(cause.effect);
+        }
+        let most = laws.values().map(BTreeSet::len).max().unwrap_or(0);
+        Self { names: names.len().max(2), laws: most.max(2) }
+    }
+
+    /// What the choice of one cause takes, where its place is known already and where it is not.
+    pub fn price(self, is_known: bool) -> f64 {
+        MORE + (if is_known { self.laws } else { self.names } as f64).ln()
+    }
+}
+
+/// What a model takes: the negative logarithm of its prior.
+pub(crate) fn price(model: &Model, free: bool, choices: Choices) -> f64 {
+    let causes = &model.added[model.known()..];
+    let one = |(i, added): (usize, &Added)| {
+        let is_known = causes[..i].iter().any(|other| other.cause.same_place(&added.cause));
+        of_cause(&added.cause, choices.price(is_known))
+    };
+    let all: f64 = causes.iter().enumerate().map(one).sum();
     all + if free { ALL_PARAMETERS } else { 0.0 }
 }
 
 /// What one cause takes.
-fn of_cause(cause: &Candidate, names: usize) -> f64 {
-    let choice = MORE + (names.max(2) as f64).ln();
+fn of_cause(cause: &Candidate, choice: f64) -> f64 {
     match cause.is_drawn() {
         // the smoothness of a curve stands in the prior of its numbers
         true => choice + UNNAMED,
@@ -53,5 +85,25 @@ pub(crate) fn width(problem: &Problem<'_>, nuisance: &Nuisance, model: &Model, k
         true if min > 0.0 && max > 10.0 * min => flat(value.abs() * (max / min).ln()),
         true => flat(max - min),
         false => flat(value.abs().max(unknown.scale) * SIZES),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::posterior::fixture::{candidate, fit_of};
+
+    #[test]
+    fn a_further_law_of_a_place_is_chosen_among_the_laws() {
+        let choices = Choices { names: 200, laws: 12 };
+        let one = price(&fit_of(&["a"], vec![1.0; 9]).model, false, choices);
+        let apart = price(&fit_of(&["a", "b"], vec![1.0; 9]).model, false, choices);
+        let same = price(&fit_of(&["a", "a"], vec![1.0; 9]).model, true, choices);
+        assert!((one - (MORE + 200f64.ln())).abs() < 1e-12);
+        assert!((apart - 2.0 * one).abs() < 1e-12);
+        assert!((same - one - MORE - 12f64.ln() - ALL_PARAMETERS).abs() < 1e-12);
+        let library: Vec<Arc<Candidate>> =
+            ["a", "b", "b"].map(|into| Arc::new(candidate(into))).into();
+        assert_eq!((Choices::of(&library).names, Choices::of(&library).laws), (2, 2));
     }
 }

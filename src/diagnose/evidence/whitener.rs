@@ -127,7 +127,8 @@ impl Coloured {
     ) -> Vec<f64> {
         let mut out = vec![0.0; series.len()];
         let length = self.stretches.per_output.max(1);
-        for ((x, out), noise) in series.chunks(length).zip(out.chunks_mut(length)).zip(&self.noise) {
+        for ((x, out), noise) in series.chunks(length).zip(out.chunks_mut(length)).zip(&self.noise)
+        {
             filter(noise, x, &self.stretches.spans, out);
         }
         out

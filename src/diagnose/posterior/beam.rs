@@ -46,13 +46,20 @@ impl Fit {
         self.model.added.len() - self.model.known()
     }
 
-    /// How it is ordered among what is as probable: fewer causes, held parameters, fewer numbers, the
-    /// plainer law.
+    /// How many places it has a law at.
+    fn places(&self) -> usize {
+        let all = &self.model.added;
+        let is_first = |i: &usize| !all[..*i].iter().any(|a| a.cause.same_place(&all[*i].cause));
+        (0..all.len()).filter(is_first).count()
+    }
+
+    /// How it is ordered among what is as probable: fewer places, held parameters, fewer numbers, the
+    /// plainer laws.
     fn order(&self) -> impl Ord + use<> {
         let mut all: Vec<_> = self.model.added.iter().map(|a| a.cause.order()).collect();
         all.sort();
         let numbers: usize = self.model.added.iter().map(|a| a.cause.unknowns()).sum();
-        (self.model.added.len() + usize::from(self.free), numbers, all)
+        (self.places() + usize::from(self.free), numbers, all)
     }
 }
 

@@ -28,16 +28,17 @@ pub(super) fn begun(
 ) -> Vec<Model> {
     let mut white: Vec<Vec<f64>> = vec![];
     basis.iter().for_each(|column| add_to_basis(&mut white, noise.whiten(column)));
-    let mut models: Vec<Model> =
-        moves.iter().map(|m| from.model.without_all(&m.out)).collect();
+    let mut models: Vec<Model> = moves.iter().map(|m| from.model.without_all(&m.out)).collect();
     for nth in 0..moves.iter().map(|m| m.new.len()).max().unwrap_or(0) {
         let mut jobs: Vec<Job> = vec![];
         let mut tried: Vec<Vec<(usize, Vec<f64>)>> = vec![];
         for (m, model) in moves.iter().zip(&models) {
             let mut own = vec![];
-            for knobs in m.new.get(nth).map_or(vec![], |(i, sizes)| points(&items[*i], sizes, far)) {
+            for knobs in m.new.get(nth).map_or(vec![], |(i, sizes)| points(&items[*i], sizes, far))
+            {
                 let cause = &items[m.new[nth].0].cause;
-                if let Some(job) = with_candidate(problem, model, cause, &knobs, 1.0, Grain::Coarse) {
+                if let Some(job) = with_candidate(problem, model, cause, &knobs, 1.0, Grain::Coarse)
+                {
                     own.push((jobs.len(), knobs));
                     jobs.push(job);
                 }

@@ -38,8 +38,7 @@ struct Ground {
 
 impl Ground {
     fn new(study: &Study<'_, '_>, fit: Fit) -> Self {
-        let tangents =
-            tangents(study.problem, study.nuisance(fit.free), &fit.model, &fit.residual);
+        let tangents = tangents(study.problem, study.nuisance(fit.free), &fit.model, &fit.residual);
         let contributions = contributions(study.problem, &fit.model, &fit.residual);
         let mut basis = vec![];
         tangents.iter().for_each(|(_, c)| add_to_basis(&mut basis, c.clone()));
@@ -51,7 +50,7 @@ impl Ground {
             fit: &self.fit,
             tangents: &self.tangents,
             contributions: &self.contributions,
-            names: study.names,
+            choices: study.choices,
             most: study.most,
         }
     }
@@ -107,7 +106,8 @@ fn one_round(study: &mut Study<'_, '_>, best: Fit, round: usize, last: bool) -> 
                 moves = ground.standing(study).moves(&items, &metrics, true).moves;
             }
             let chosen = neighbours(&ground.fit, moves, &items, &study.beam, &study.settled);
-            let keys: Vec<SetKey> = chosen.iter().map(|m| m.leads_to(&ground.fit, &items)).collect();
+            let keys: Vec<SetKey> =
+                chosen.iter().map(|m| m.leads_to(&ground.fit, &items)).collect();
             study.tried.extend(keys.iter().cloned());
             study.settled.extend(keys);
             attempt(study, &ground, &chosen, &items, false);

@@ -94,7 +94,8 @@ pub(super) fn dictionary(
             }
         }
     }
-    let hits = steer(problem, &mut sharing, candidates, &mut probes, &present, (1e-6, gentle), true);
+    let hits =
+        steer(problem, &mut sharing, candidates, &mut probes, &present, (1e-6, gentle), true);
     let mut of_start: BTreeMap<(usize, usize), Vec<(Vec<f64>, f64)>> = BTreeMap::new();
     for (probe, column) in hits {
         of_start.entry((probe.candidate, probe.start)).or_default().push((column, probe.size));

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::beam::Fit;
-use crate::evidence::{NoiseModel, Whitener, occam, price, width};
+use crate::evidence::{Choices, NoiseModel, Whitener, occam, price, width};
 use crate::nuisance::{Key, Nuisance, get};
 use crate::optimise::Settings;
 use crate::problem::{Grain, Model, Problem};
@@ -25,8 +25,7 @@ pub(super) struct Judge<'a, 'b> {
     /// Whether all parameters may move.
     pub free: bool,
     pub disturbance: &'a dyn NoiseModel,
-    /// Names of the library.
-    pub names: usize,
+    pub choices: Choices,
 }
 
 impl Judge<'_, '_> {
@@ -51,7 +50,7 @@ impl Judge<'_, '_> {
             keys.iter().map(|&key| width(self.problem, self.nuisance, &model, key)).collect();
         let squares: f64 = residuals.iter().map(|r| r * r).sum();
         let variance = squares / residuals.len().max(1) as f64;
-        let prior = self.expected(&model, &keys) - price(&model, self.free, self.names);
+        let prior = self.expected(&model, &keys) - price(&model, self.free, self.choices);
         let fit = Fit {
             occam: occam(&columns, &widths, variance),
             likelihood: estimated.log_likelihood,
@@ -71,7 +70,8 @@ impl Judge<'_, '_> {
                 Key::Knob(..) => None,
                 _ => self.nuisance.unknown(self.problem, model, key).prior,
             };
-            prior.map_or(0.0, |(centre, deviation)| ((get(model, key) - centre) / deviation).powi(2))
+            prior
+                .map_or(0.0, |(centre, deviation)| ((get(model, key) - centre) / deviation).powi(2))
         };
         -0.5 * keys.iter().map(one).sum::<f64>()
     }

@@ -8,10 +8,12 @@ use crate::effect::{Effect, Named};
 use crate::evidence::{NoiseModel, Stretches};
 use crate::problem::Model;
 use crate::register;
+use crate::system::Route;
 
 /// A cubic law into a channel, of a coordinate.
-pub(super) fn candidate(into: &str) -> Candidate {
-    let (_, shape) = register::effects().into_iter().find(|(card, _)| card.name == "cubic").unwrap();
+pub(crate) fn candidate(into: &str) -> Candidate {
+    let (_, shape) =
+        register::effects().into_iter().find(|(card, _)| card.name == "cubic").unwrap();
     let card = shape.card();
     let count = card.knobs.len();
     Candidate {
@@ -22,7 +24,7 @@ pub(super) fn candidate(into: &str) -> Candidate {
         of: Some("position".into()),
         also_into: vec![],
         also_of: vec![],
-        wire: Wire::Path,
+        wire: Wire::Stage(Route { source: 0, rate: (0, 0.0), target: 0 }),
         preference: Preference::DeclaredChannel,
         place: Preference::DeclaredChannel,
         linear: vec![0],
@@ -42,7 +44,7 @@ pub(super) fn candidate(into: &str) -> Candidate {
 }
 
 /// A model with cubic laws into these channels, and what it leaves.
-pub(super) fn fit_of(into: &[&str], residual: Vec<f64>) -> Fit {
+pub(crate) fn fit_of(into: &[&str], residual: Vec<f64>) -> Fit {
     let mut model = Model { theta: vec![], starts: vec![], added: vec![] };
     for into in into {
         let cause = Arc::new(candidate(into));

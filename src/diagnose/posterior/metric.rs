@@ -93,7 +93,12 @@ impl Metric {
     }
 
     /// The best answers to a question: so many single ones, so many pairs (none where 0).
-    pub fn answer(&self, items: &[Item], question: &Question<'_>, wanted: (usize, usize)) -> Answers {
+    pub fn answer(
+        &self,
+        items: &[Item],
+        question: &Question<'_>,
+        wanted: (usize, usize),
+    ) -> Answers {
         let mut basis: Vec<Vec<f64>> = vec![];
         question.beside.iter().for_each(|c| add_to_basis(&mut basis, c.clone()));
         let mut target = question.target.clone();

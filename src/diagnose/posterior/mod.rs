@@ -21,7 +21,7 @@ mod contribution;
 mod dictionary;
 mod fits;
 #[cfg(test)]
-mod fixture;
+pub(crate) mod fixture;
 mod metric;
 mod moves;
 mod nameless;

@@ -9,9 +9,8 @@ use std::sync::Arc;
 use super::beam::{Fit, SetKey, name};
 use super::dictionary::Item;
 use super::metric::{Answer, Metric, Question};
-use crate::candidate::NUMBER;
-use crate::criteria::MORE;
-use crate::evidence::Whitener;
+use crate::candidate::{Candidate, NUMBER};
+use crate::evidence::{Choices, Whitener};
 use crate::nuisance::Key;
 use crate::problem::Added;
 
@@ -49,8 +48,7 @@ pub(super) struct Standing<'a> {
     pub tangents: &'a [(Key, Vec<f64>)],
     /// What each cause does.
     pub contributions: &'a [Option<Vec<f64>>],
-    /// Names of the library.
-    pub names: usize,
+    pub choices: Choices,
     /// Causes allowed.
     pub most: usize,
 }
@@ -77,17 +75,24 @@ fn outs(known: usize, count: usize) -> Vec<Vec<usize>> {
 }
 
 impl Standing<'_> {
-    fn price(&self, unknowns: usize) -> f64 {
-        MORE + (self.names.max(2) as f64).ln() + NUMBER * unknowns as f64
+    /// What a cause takes to first order: an item stands at a known place where a cause does that is
+    /// at that place and is not to go.
+    fn price(&self, cause: &Candidate, is_known: bool) -> f64 {
+        self.choices.price(is_known) + NUMBER * cause.unknowns() as f64
     }
 
     /// All moves in these metrics; `neighbours`: only those that exchange, one by one.
     pub fn moves(&self, items: &[Item], metrics: &[Arc<dyn Whitener>], neighbours: bool) -> Moves {
         let model = &self.fit.model;
         let (known, count) = (model.known(), model.added.len());
-        let own = |added: &Added| self.price(added.cause.unknowns());
-        let price = |item: &Item| self.price(item.cause.unknowns());
-        let all: f64 = model.added[known..].iter().map(own).sum();
+        let of_set = |out: &[usize]| {
+            let stays: Vec<&Added> =
+                (known..count).filter(|i| !out.contains(i)).map(|i| &model.added[i]).collect();
+            let is_known =
+                |i: usize| stays[..i].iter().any(|a| a.cause.same_place(&stays[i].cause));
+            let own = |i: usize| self.price(&stays[i].cause, is_known(i));
+            (0..stays.len()).map(own).sum::<f64>()
+        };
         let mut found = Moves { moves: vec![], valued: BTreeSet::new() };
         for noise in metrics {
             let metric = Metric::new(items, |c| noise.whiten(c));
@@ -104,8 +109,12 @@ impl Standing<'_> {
                 if asked.0 == 0 && !out.is_empty() {
                     continue;
                 }
-                let goes: f64 = out.iter().map(|&i| own(&model.added[i])).sum();
-                let question = self.question(&out, noise.as_ref(), goes - all, &price);
+                let price = |item: &Item| {
+                    let mut stays = (known..count).filter(|i| !out.contains(i));
+                    let is_known = stays.any(|i| model.added[i].cause.same_place(&item.cause));
+                    self.price(&item.cause, is_known)
+                };
+                let question = self.question(&out, noise.as_ref(), -of_set(&out), &price);
                 let answers = metric.answer(items, &question, asked);
                 if out.is_empty() {
                     stay = answers.stay;

@@ -44,18 +44,21 @@ fn a_compromise_gives_way_to_the_two_that_it_stands_for() {
         fit: &fit,
         tangents: &tangents,
         contributions: &contributions,
-        names: 23,
+        choices: Choices { names: 23, laws: 3 },
         most: 5,
     };
     let white = Stretches::of_lengths(&[N]).white(&fit.residual);
     let found = standing.moves(&items, &[white.clone()], false);
     let best = &found.moves[0];
     assert!(best.gain > 100.0, "{}", best.gain);
-    // a alone beside `sum` leaves 2 a - ... as well: either way the two of the truth are reached
+    // beside `sum` either of the two is enough to first order
     let names: Vec<String> = best.leads_to(&fit, &items).names;
-    assert!(names.iter().any(|n| n.contains(">a<")), "{names:?}");
-    let exchange = found.moves.iter().find(|m| m.out == [0] && m.new.len() == 2).unwrap();
-    assert_eq!(exchange.leads_to(&fit, &items).names, ["cubic>a<position", "cubic>b<position"]);
+    assert!(names.iter().any(|n| n.contains(">a<") || n.contains(">b<")), "{names:?}");
+    let truth = ["cubic>a<position", "cubic>b<position"];
+    let mut both = found.moves.iter().filter(|m| m.leads_to(&fit, &items).names == truth);
+    let exchange = both.next().unwrap();
+    assert_eq!(exchange.out, [0]);
+    assert!(exchange.gain > best.gain - 10.0);
     let size = |of: usize| exchange.new.iter().find(|n| n.0 == of).unwrap().1[0];
     assert!((size(0) - 3.0).abs() < 0.1 && (size(1) - 1.0).abs() < 0.1);
     // what is foretold to be hopeless is no neighbour of another place

@@ -75,11 +75,7 @@ fn bases(study: &Study<'_, '_>, best: &Fit) -> Vec<Fit> {
 }
 
 fn drawing<'s>(study: &'s Study<'_, '_>, base: &Fit) -> Drawing<'s, 's> {
-    Drawing {
-        problem: study.problem,
-        nominal: study.nominal,
-        nuisance: study.nuisance(base.free),
-    }
+    Drawing { problem: study.problem, nominal: study.nominal, nuisance: study.nuisance(base.free) }
 }
 
 fn curves(study: &mut Study<'_, '_>, base: &Fit) {

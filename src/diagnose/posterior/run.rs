@@ -13,7 +13,7 @@ use super::veto::vetoed;
 use crate::candidate::Wire;
 use crate::dependence::{DEPENDS, dependence};
 use crate::evidence::NoiseModel;
-use crate::found::Found;
+use crate::found::{Found, Posterior};
 use crate::library::Allowed;
 use crate::limits::limited;
 use crate::nominal::Nominal;
@@ -166,8 +166,7 @@ fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
     for (_, column) in tangents(study.problem, nuisance, &first.model, &first.residual) {
         add_to_basis(&mut basis, column);
     }
-    (!study.items.is_empty())
-        .then(|| ranking(study.problem, &study.items, &first.residual, basis))
+    (!study.items.is_empty()).then(|| ranking(study.problem, &study.items, &first.residual, basis))
 }
 
 /// The headline after the veto, with its look-alikes.
@@ -185,8 +184,7 @@ fn told(mut study: Study<'_, '_>, first: Option<Screen>, dependence: f64) -> Sea
         spikes: study.problem.spikes(),
         full: headline.causes() >= study.most && study.most > 0,
         given_up: false,
-        nothing: Some(nothing),
-        withdrawn,
+        posterior: Some(Posterior { nothing, withdrawn }),
     };
     let nuisance = study.nuisance(headline.free).clone();
     Searched { found, free: headline.free, nuisance }

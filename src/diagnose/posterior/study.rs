@@ -3,12 +3,12 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use super::beam::{Beam, Fit, SetKey, name};
+use super::beam::{Beam, Fit, SetKey};
 use super::dictionary::Item;
 use super::fits::{Judge, Wish};
 use super::starts;
 use crate::candidate::Candidate;
-use crate::evidence::{NoiseModel, Stretches};
+use crate::evidence::{Choices, NoiseModel, Stretches};
 use crate::library::{Allowed, library};
 use crate::nominal::Nominal;
 use crate::nuisance::Nuisance;
@@ -16,8 +16,9 @@ use crate::problem::{Grain, Model, Part, Problem, Span};
 use crate::statistics::strongest;
 use crate::watch::Watch;
 
-/// Names of the library before it is known.
+/// Names of the library, and laws of a place, before it is known.
 const NAMES: usize = 100;
+const LAWS: usize = 10;
 /// Lines of the residual that hums are tried at.
 const LINES: usize = 3;
 /// Distance from the best within which fits are judged again when the data are looked at anew.
@@ -37,8 +38,7 @@ pub(super) struct Study<'a, 'b> {
     pub disturbance: Stretches,
     pub beam: Beam,
     pub candidates: Vec<Arc<Candidate>>,
-    /// Names of the library.
-    pub names: usize,
+    pub choices: Choices,
     pub items: Vec<Item>,
     /// Sets that were fitted from a move, and those that were fitted as neighbours.
     pub tried: BTreeSet<SetKey>,
@@ -67,7 +67,7 @@ impl<'a, 'b> Study<'a, 'b> {
             disturbance,
             beam: Beam::default(),
             candidates: vec![],
-            names: NAMES,
+            choices: Choices { names: NAMES, laws: LAWS },
             items: vec![],
             tried: BTreeSet::new(),
             settled: BTreeSet::new(),
@@ -82,8 +82,13 @@ impl<'a, 'b> Study<'a, 'b> {
     /// Fits, none of them kept yet.
     pub fn fit(&self, free: bool, wishes: &[Wish], iterations: usize) -> Vec<Fit> {
         let (problem, nuisance) = (&*self.problem, self.nuisance(free));
-        let judge =
-            Judge { problem, nuisance, free, disturbance: &self.disturbance, names: self.names };
+        let judge = Judge {
+            problem,
+            nuisance,
+            free,
+            disturbance: &self.disturbance,
+            choices: self.choices,
+        };
         judge.fit(wishes, iterations)
     }
 
@@ -155,8 +160,9 @@ impl<'a, 'b> Study<'a, 'b> {
             Arc::new(own)
         };
         let nuisance = self.nuisance(fit.free);
-        let candidates: Vec<_> = all.into_iter().filter(|c| !nuisance.frees(c)).map(finer).collect();
-        self.names = candidates.iter().map(|c| name(c)).collect::<BTreeSet<_>>().len().max(2);
+        let candidates: Vec<_> =
+            all.into_iter().filter(|c| !nuisance.frees(c)).map(finer).collect();
+        self.choices = Choices::of(&candidates);
         self.candidates = candidates;
     }
 }

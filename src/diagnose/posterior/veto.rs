@@ -7,29 +7,26 @@
 use super::beam::Fit;
 use super::fits::Wish;
 use super::study::Study;
-use crate::candidate::Candidate;
 use crate::criteria::REFUTED;
 use crate::evidence::Stretches;
-use crate::found::Withdrawn;
-use crate::problem::{Grain, Part};
+use crate::problem::{Added, Grain, Part};
 
 /// Iterations of a fit without a cause.
 const ITERATIONS: usize = 8;
 
 /// A fit without the causes that the held part refutes, and these.
-pub(super) fn vetoed(study: &mut Study<'_, '_>, fit: Fit) -> (Fit, Vec<Withdrawn>) {
+pub(super) fn vetoed(study: &mut Study<'_, '_>, fit: Fit) -> (Fit, Vec<Added>) {
     let (mut fit, mut withdrawn) = (fit, vec![]);
     let held = Stretches::new(study.problem, Part::Choose);
-    while let Some((index, nats, rest)) = refuted(study, &fit, &held) {
-        let cause: &Candidate = &fit.model.added[index].cause;
-        withdrawn.push(Withdrawn { cause: cause.name(), against: -nats });
+    while let Some((index, rest)) = refuted(study, &fit, &held) {
+        withdrawn.push(fit.model.added[index].clone());
         fit = rest;
     }
     (fit, withdrawn)
 }
 
 /// The cause that the held part speaks against most, and the fit without it.
-fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<(usize, f64, Fit)> {
+fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<(usize, Fit)> {
     let all: Vec<usize> = (fit.model.known()..fit.model.added.len()).collect();
     if study.problem.samples(Part::Choose).next().is_none() || all.is_empty() {
         return None;
@@ -48,7 +45,7 @@ fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<(us
     let gains: Vec<f64> =
         densities.map(|bare| bare.map_or(f64::INFINITY, |bare| with - bare)).collect();
     let (at, gain) = gains.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (gain <= REFUTED).then(|| (all[at], gain, without[at].clone()))
+    (gain <= REFUTED).then(|| (all[at], without[at].clone()))
 }
 
 /// The fit without one of its causes.

@@ -123,11 +123,11 @@ pub fn held(finding: &Finding) -> Option<String> {
     })
 }
 
-/// A cause that the test data refute.
+/// A cause that data refute which were not fitted.
 pub fn withdrawn(withdrawn: &Withdrawn) -> String {
     format!(
-        "Withdrawn: {}. The test data refute it (test RMSE times {} with it), and the extended model does \
-         not have it.",
+        "Withdrawn: {}. Data that were not fitted speak against it (test RMSE times {} with it), and \
+         the extended model does not have it.",
         super::place_of(&withdrawn.cause),
         number(withdrawn.test_rmse_ratio, None)
     )
