@@ -71,7 +71,7 @@ pub(crate) fn search(
         nameless(&mut study);
     }
     watch.tell(0.95, "checking what was named");
-    Some(told(study, screen, dependence))
+    told(study, screen, dependence)
 }
 
 /// The model without causes, parameters held and free.
@@ -170,9 +170,8 @@ fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
 }
 
 /// The headline after the veto, with its look-alikes.
-fn told(mut study: Study<'_, '_>, first: Option<Screen>, dependence: f64) -> Searched {
-    let headline = study.beam.headline().cloned();
-    let headline = headline.expect("the model without causes was fitted");
+fn told(mut study: Study<'_, '_>, first: Option<Screen>, dependence: f64) -> Option<Searched> {
+    let headline = study.beam.headline().cloned()?;
     let (headline, withdrawn) = vetoed(&mut study, headline);
     let nothing = study.beam.probability(|fit| !fit.free && fit.causes() == 0);
     let found = Found {
@@ -187,5 +186,5 @@ fn told(mut study: Study<'_, '_>, first: Option<Screen>, dependence: f64) -> Sea
         posterior: Some(Posterior { nothing, withdrawn }),
     };
     let nuisance = study.nuisance(headline.free).clone();
-    Searched { found, free: headline.free, nuisance }
+    Some(Searched { found, free: headline.free, nuisance })
 }
