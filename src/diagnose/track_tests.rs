@@ -54,6 +54,7 @@ fn what_diverges_in_the_end_loses_its_last_cause() {
         spikes: vec![vec![]],
         full: false,
         given_up: false,
+        posterior: None,
     };
     let held = Nuisance::new(&prepared.problem, &prepared.nominal);
     let Prepared { problem, nominal, start, .. } = &mut prepared;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::beam::Fit;
 use crate::candidate::{Candidate, Preference, Wire};
-use crate::effect::{Effect, Named};
+use crate::effect::Named;
 use crate::evidence::{NoiseModel, Stretches};
 use crate::problem::Model;
 use crate::register;
@@ -37,7 +37,7 @@ pub(crate) fn candidate(into: &str) -> Candidate {
         probe: 1e-3,
         stiffness: 0.0,
         push: 0.0,
-        named: Named { quantity: None, own_path: false },
+        named: Named { quantity: None, own_path: false, bare: false },
         units: (String::new(), String::new()),
         twins: vec![],
     }
