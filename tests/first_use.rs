@@ -23,7 +23,7 @@ fn torque(n: usize, seed: u64) -> Vec<f64> {
     let (mut slow, mut u) = (0.0, 0.0);
     let mut next = |e: f64| {
         slow += 0.1 * (e - slow);
-        u += 0.3 * (2.0 * slow - u);
+        u += 0.3 * (0.8 * slow - u);
         u
     };
     white.into_iter().map(&mut next).collect()
@@ -123,10 +123,7 @@ fn a_model_that_is_right_and_one_that_is_useless_read_differently() {
     let right = diagnosed(&model(0.05), record(&NONE, 2500, 5), &["linear", "bias"]);
     assert_eq!(right.verdict, Verdict::NothingFound);
     let text = sentences::headline(&right);
-    assert!(
-        text.contains("fits angle to 9") && text.contains("times the noise and white"),
-        "{text}"
-    );
+    assert!(text.contains("fits angle to 9") && text.contains("the noise and white"), "{text}");
     let held = sentences::held(&right).unwrap();
     assert!(held.contains("held: m, l, g."), "{held}");
     // an output that has nothing to do with the input
@@ -172,12 +169,12 @@ fn a_test_on_the_data_themselves_is_refused() {
 #[test]
 fn a_saturation_acts_from_its_limits_on() {
     let u = torque(3000, 11);
-    let clipped: Vec<f64> = u.iter().map(|u| u.clamp(-0.3, 0.3)).collect();
+    let clipped: Vec<f64> = u.iter().map(|u| u.clamp(-0.15, 0.15)).collect();
     let finding =
         diagnosed(&model(0.05), record_of(&u, &angle(&clipped, &NONE), 11), &["saturation"]);
     let acts = finding.causes[0].acts_where.clone().unwrap();
-    let above = u.iter().take(2400).filter(|u| u.abs() > 0.3).count() as f64 / 2400.0;
-    assert!((acts.above.unwrap() - 0.3).abs() < 0.005, "{acts:?}");
+    let above = u.iter().take(2400).filter(|u| u.abs() > 0.15).count() as f64 / 2400.0;
+    assert!((acts.above.unwrap() - 0.15).abs() < 0.005, "{acts:?}");
     assert!((acts.share_of_time - above).abs() < 0.02, "{acts:?} {above}");
 }
 

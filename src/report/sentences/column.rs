@@ -8,8 +8,8 @@ pub fn sentence(cause: &Cause, fault: ColumnFault) -> String {
     let into = &cause.into;
     let count = cause.rows.as_ref().map_or(0, Vec::len);
     let unit = cause.parameters.first().map_or("", |v| &v.unit);
-    let comes_back = format!(
-        "before this was put right, {} of the removable error was there for it",
+    let put_right = format!(
+        "putting that right takes away {} of the removable error",
         percent(cause.error_removed)
     );
     match fault {
@@ -40,15 +40,15 @@ pub fn sentence(cause: &Cause, fault: ColumnFault) -> String {
             rough(over_noise)
         ),
         ColumnFault::SwappedSign => {
-            format!("The sign of {into} is swapped; {comes_back}.")
+            format!("The sign of {into} is swapped; {put_right}.")
         }
         ColumnFault::TimeShift(shift) => format!(
-            "{into} was recorded {} s {}; {comes_back}.",
+            "{into} was recorded {} s {}; {put_right}.",
             number(shift.abs(), None),
             if shift < 0.0 { "early" } else { "late" }
         ),
         ColumnFault::SamplingTime(step) => format!(
-            "The sampling time is {} s, not what is stated; {comes_back}.",
+            "The sampling time is {} s, not what is stated; {put_right}.",
             number(step, None)
         ),
     }

@@ -74,7 +74,8 @@ pub fn note(note: &Note) -> String {
             percent(*prior)
         ),
         Note::WidthUnresolved { into, at_most, unit } => format!(
-            "The record does not resolve the width of the friction on {into}: it is at most about {}.",
+            "The record does not resolve how sharp the step at zero on {into} is: its width is at most \
+             about {}.",
             rough(*at_most) + &spaced(unit)
         ),
         Note::KeepsItsSign { into, of } => format!(

@@ -84,10 +84,16 @@ pub fn left(name: &str, left: &Left) -> String {
         false => format!("coloured (score {:.0}): a sample predicts the next", left.score),
     };
     match left.ratio_to_noise {
-        Some(ratio) => {
-            format!("What is left of {name} is {} times the noise, and {colour}.", rough(ratio))
-        }
+        Some(ratio) => format!("What is left of {name} is {}, and {colour}.", over_noise(ratio)),
         None => format!("What is left of {name} is {colour}; the noise is not known."),
+    }
+}
+
+/// A residual in sizes of the noise, of which an estimate is an upper bound.
+fn over_noise(ratio: f64) -> String {
+    match ratio <= 1.0 {
+        true => "no more than the noise".into(),
+        false => format!("{} times the noise", rough(ratio)),
     }
 }
 
@@ -139,7 +145,7 @@ pub fn nothing(finding: &Finding) -> String {
         "Nothing found: what the model leaves does not depend on the inputs.".to_string();
     let noise = |name: &String| {
         let left = finding.left.get(name)?;
-        let ratio = left.ratio_to_noise.map(|ratio| format!("{} times the noise", rough(ratio)));
+        let ratio = left.ratio_to_noise.map(over_noise);
         let colour = if left.white { "white" } else { "coloured" };
         Some(ratio.map_or_else(|| colour.into(), |ratio| format!("{ratio} and {colour}")))
     };

@@ -210,6 +210,9 @@ fn what_is_left_and_what_was_supposed() {
         "What is left of y is 1.0 times the noise, and white: a sample says nothing of the next."
     );
     assert!(of(Some(32.7), false).contains("33 times the noise, and coloured (score 826)"));
+    assert!(
+        of(Some(0.68), true).starts_with("What is left of y is no more than the noise, and white")
+    );
     assert!(of(None, false).contains("the noise is not known"));
     let facts = RecordFacts { records: 1, samples: 400, sampling_time: 0.1, test_samples: None };
     assert!(record(&facts).starts_with("400 samples of one record, 0.1000 s apart; "));
