@@ -10,7 +10,7 @@ use super::search::Search;
 use super::view::View;
 use crate::model::{Dual32, Dual64};
 use crate::per_lanes;
-use crate::real::{F32x16, F64x8, Real};
+use crate::real::{F32x16, F64x8, Real, Trace};
 
 /// What an effect may look at in one instant.
 #[derive(Debug, Clone, Copy)]
@@ -151,6 +151,8 @@ pub enum EffectCall<'a> {
     Dual64(&'a EffectBlock<'a, Dual64>, &'a mut [Dual64], &'a mut [Dual64]),
     /// Single precision with slopes.
     Dual32(&'a EffectBlock<'a, Dual32>, &'a mut [Dual32], &'a mut [Dual32]),
+    /// Numbers that write down what is done with them.
+    Trace(&'a EffectBlock<'a, Trace>, &'a mut [Trace], &'a mut [Trace]),
 }
 
 /// The object-safe face of an effect, filled in for everything that is an [`Effect`].
@@ -211,6 +213,7 @@ impl<E: Effect + CandidateEffect> Shape for E {
             EffectCall::F32(block, w, rates) => run(self, block, w, rates),
             EffectCall::Dual64(block, w, rates) => run(self, block, w, rates),
             EffectCall::Dual32(block, w, rates) => run(self, block, w, rates),
+            EffectCall::Trace(block, w, rates) => each(self, block, w, rates),
         }
     }
 
@@ -256,6 +259,13 @@ per_lanes! {
     up to avx2,
     /// Runs the law pack by pack.
     fn run[E: Effect,; R](effect: &E, block: &EffectBlock<'_, R>, w: &mut [R], rates: &mut [R]) {
+        each(effect, block, w, rates);
+    }
+}
+
+/// The same for any number.
+#[inline(always)]
+fn each<E: Effect, R: Real>(effect: &E, block: &EffectBlock<'_, R>, w: &mut [R], rates: &mut [R]) {
         let packs = block.packs.max(1);
         let knobs = block.knobs.len() / packs;
         let states = block.states.len() / packs;
@@ -270,5 +280,4 @@ per_lanes! {
             };
             w[pack] = effect.law(&at, &mut rates[pack * states..][..states]);
         }
-    }
 }

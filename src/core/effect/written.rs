@@ -265,6 +265,7 @@ impl Shape for WrittenEffect {
             EffectCall::F32(block, w, _) => self.run(block, w),
             EffectCall::Dual64(block, w, _) => self.run(block, w),
             EffectCall::Dual32(block, w, _) => self.run(block, w),
+            EffectCall::Trace(block, w, _) => self.run(block, w),
         }
     }
 

@@ -6,7 +6,7 @@ use std::ops::Range;
 use super::Signals;
 use super::lane_number::{Dual32, Dual64};
 use super::march::MarchCall;
-use crate::real::{F32x16, F64x8};
+use crate::real::{F32x16, F64x8, Trace};
 
 /// What a law is asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,7 +107,7 @@ impl<R: Copy> Block<'_, R> {
     }
 }
 
-/// A block of one of the four kinds of number that models are compiled for, and the slice
+/// A block of one of the five kinds of number that models are compiled for, and the slice
 /// that takes the answer: `packs * sizes.answer(ask)` values.
 #[derive(Debug)]
 pub enum Call<'a> {
@@ -119,6 +119,8 @@ pub enum Call<'a> {
     Dual64(&'a Block<'a, Dual64>, &'a mut [Dual64]),
     /// Single precision with slopes.
     Dual32(&'a Block<'a, Dual32>, &'a mut [Dual32]),
+    /// Numbers that write down what is done with them.
+    Trace(&'a Block<'a, Trace>, &'a mut [Trace]),
 }
 
 /// The transposed derivatives of a law in one instant, times given numbers.

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::lane_number::LaneNumber;
 use super::law::{Ask, Block, Call, Law, Matrices};
 use super::{Dual32, Dual64, Fault, Signals, Sizes, StateSpaceModel};
-use crate::real::{F64x8, Lanes, Real};
+use crate::real::{F64x8, Lanes, Real, Trace};
 use table::{Place, Rows};
 
 mod table;
@@ -123,6 +123,29 @@ impl Linearised {
                     to.set_lane(part % each * 8 + lane, number.0[lane]);
                 }
             }
+        }
+    }
+
+    /// The same for numbers that write down what is done with them: differences are not
+    /// recorded, so what is derived stays what it is at the present parameters.
+    fn derive_recorded(&self, block: &Block<'_, Trace>, out: &mut [Trace]) {
+        let theta: Vec<F64x8> =
+            block.theta.iter().map(|value| F64x8::constant(value.value())).collect();
+        let mut derived = vec![F64x8::constant(0.0); out.len()];
+        let Block { sizes, packs, .. } = *block;
+        let plain = Block {
+            sizes,
+            packs,
+            theta: &theta,
+            derived: &[],
+            x: &[],
+            u: &[],
+            w: &[],
+            time: F64x8::constant(0.0),
+        };
+        self.answer(Ask::Derived, Call::F64(&plain, &mut derived));
+        for (to, value) in out.iter_mut().zip(derived) {
+            *to = Trace::constant(value.0[0]);
         }
     }
 
@@ -248,6 +271,8 @@ impl Law for Linearised {
                     out.fill(Dual32::constant(f64::NAN));
                 }
             }
+            Call::Trace(block, out) if ask == Ask::Derived => self.derive_recorded(block, out),
+            Call::Trace(block, out) => self.ask(ask, block, out),
         }
     }
 

@@ -7,7 +7,7 @@ use super::law::{Ask, Block, Call, Fault, Law, Matrices, Pull, PullCall};
 use super::march::{MarchCall, march};
 use super::{Signals, TimeKind};
 use crate::per_lanes;
-use crate::real::{InRegisters, Real};
+use crate::real::{InRegisters, Real, Trace};
 
 /// A physical system, written once in any kind of number.
 ///
@@ -131,6 +131,7 @@ impl<P: Physics> Law for P {
             Call::F32(block, out) => run(self, ask, block, out),
             Call::Dual64(block, out) => run(self, ask, block, out),
             Call::Dual32(block, out) => run(self, ask, block, out),
+            Call::Trace(block, out) => trace(self, ask, block, out),
         }
     }
 
@@ -168,6 +169,19 @@ fn run<P: Physics, R: InRegisters>(physics: &P, ask: Ask, block: &Block<'_, R>, 
         Ask::Output => outputs(physics, block, out),
         Ask::Coordinates => coordinates(physics, block, out),
         Ask::Derived => derived(physics, block, out),
+    }
+}
+
+/// One question to be written down: seldom asked, so not compiled for every instruction set.
+fn trace<P: Physics>(physics: &P, ask: Ask, block: &Block<'_, Trace>, out: &mut [Trace]) {
+    let n = block.sizes;
+    for (pack, out) in out.chunks_exact_mut(n.answer(ask).max(1)).take(block.packs).enumerate() {
+        match ask {
+            Ask::Derivative => physics.derivative(&block.at(pack), out),
+            Ask::Output => physics.output(&block.at(pack), out),
+            Ask::Coordinates => physics.coordinates(&block.at(pack), out),
+            Ask::Derived => physics.derive(&block.theta[pack * n.theta..][..n.theta], out),
+        }
     }
 }
 

@@ -25,6 +25,8 @@ mod lanes;
 mod outlined;
 mod rules;
 mod scalar;
+mod tape;
+mod trace;
 #[cfg(target_arch = "x86_64")]
 mod x86;
 
@@ -33,6 +35,8 @@ pub use isa::Isa;
 #[doc(hidden)]
 pub use isa::recast;
 pub use lanes::{F32x16, F64x8, InRegisters, Lanes};
+pub use tape::{Binary, Given, Line, Node, Tape, Term, Unary};
+pub use trace::Trace;
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};

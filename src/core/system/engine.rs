@@ -1,7 +1,10 @@
 //! The simulation: groups of lanes, each with its own effects, through one law.
 
+mod recorded;
 mod tracks;
 mod transition;
+
+pub(crate) use recorded::record;
 
 use crate::model::{Ask, Block, Law};
 use crate::per_isa;
@@ -243,7 +246,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             x: &self.x,
             u: &self.u[0],
             w: &self.w,
-            time: R::constant(time),
+            time: R::time(time),
         };
         if known.is_none() {
             self.law.answer(Ask::Derived, R::call(&block, &mut self.still));
@@ -267,7 +270,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             x: &self.x,
             u: &self.u[slot],
             w: &self.no_w,
-            time: R::constant(time),
+            time: R::time(time),
         };
         self.law.answer(ask, R::call(&block, &mut self.y));
     }
@@ -328,7 +331,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             x,
             u,
             w: &self.w,
-            time: R::constant(time),
+            time: R::time(time),
         };
         if let Some(exact) = &mut self.exact {
             exact.note(i, u, &self.u[slot], &self.w);

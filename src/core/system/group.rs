@@ -107,7 +107,7 @@ impl<'a, R: EffectNumber> Group<'a, R> {
             derived: self.share(derived, n.derived),
             x: self.share(x, n.x),
             u: self.share(u, n.u),
-            time: R::constant(time),
+            time: R::time(time),
         }
     }
 
@@ -127,6 +127,19 @@ impl<'a, R: EffectNumber> Group<'a, R> {
                 }
             }
         }
+    }
+
+    /// Puts other numbers in the place of the knobs.
+    pub fn take_knobs(&mut self, knobs: Vec<R>) {
+        self.wirings.iter_mut().for_each(|wiring| wiring.take_knobs(self.plan, &knobs));
+        self.knobs = knobs;
+    }
+
+    /// Everything that it remembers from step to step, delay lines apart.
+    pub fn remembered(&mut self) -> Vec<&mut R> {
+        let paths = self.inputs.remembered().chain(self.outputs.remembered());
+        let plays = self.wirings.iter_mut().filter_map(Wiring::remembered);
+        std::iter::once(&mut self.s).chain(paths).chain(plays).flatten().collect()
     }
 
     pub fn restart(&mut self) {
@@ -162,7 +175,7 @@ impl<'a, R: EffectNumber> Group<'a, R> {
         for &(p, knob) in &self.drifts {
             for pack in 0..self.packs {
                 let at = (self.first + pack) * n + p;
-                now[at] = theta[at] + self.knobs[pack * self.plan.knobs + knob] * time;
+                now[at] = theta[at] + self.knobs[pack * self.plan.knobs + knob] * R::time(time);
             }
         }
     }

@@ -37,6 +37,15 @@ impl<R: EffectNumber> Memory<R> {
         }
     }
 
+    /// What is remembered of a series as one number.
+    pub fn remembered(&mut self) -> Option<&mut Vec<R>> {
+        match self {
+            Self::Lag(lag) => Some(&mut lag.value),
+            Self::Play(play) => Some(&mut play.value),
+            Self::None | Self::Delay(_) => None,
+        }
+    }
+
     pub fn restart(&mut self) {
         match self {
             Self::None => {}
@@ -82,6 +91,11 @@ impl<R: EffectNumber> InputPaths<R> {
 
     pub fn is_empty(&self) -> bool {
         self.filters.is_empty()
+    }
+
+    /// What its filters remember.
+    pub fn remembered(&mut self) -> impl Iterator<Item = &mut Vec<R>> {
+        self.filters.iter_mut().filter_map(|(_, _, memory)| memory.remembered())
     }
 
     pub fn restart(&mut self) {

@@ -17,6 +17,7 @@ mod path;
 mod placed;
 mod plan;
 mod rates;
+mod recorded;
 mod sampling;
 mod sight;
 mod tables;
@@ -36,6 +37,7 @@ pub use lane::{Drive, Lane, Route, Track};
 pub use placed::{AlsoInto, Placed};
 pub use plan::{Base, MOST_SUBSTEPS, Plan, Way};
 pub use rates::points;
+pub use recorded::{Recorded, RecordedParameter, Remembered};
 pub use sampling::{Hold, Integrator, Method, Sampling};
 pub use tables::Origin;
 

@@ -70,6 +70,14 @@ impl<R: EffectNumber> OutputPaths<R> {
         }
     }
 
+    /// What its filters remember.
+    pub fn remembered(&mut self) -> impl Iterator<Item = &mut Vec<R>> {
+        self.entries.iter_mut().flat_map(|entry| {
+            let before = matches!(entry.memory, Memory::Lag(_)).then_some(&mut entry.before);
+            entry.memory.remembered().into_iter().chain(before)
+        })
+    }
+
     /// Passes the outputs of one instant through every path.
     pub fn advance(
         &mut self,
@@ -100,9 +108,8 @@ impl<R: EffectNumber> OutputPaths<R> {
                     Memory::None => curve(slot, own, now),
                     Memory::Play(play) => play.advance(pack, own[0], now),
                     Memory::Delay(line) => line.advance(pack, own[0], h, [now; 3], false)[0],
-                    Memory::Lag(lag) if first => lag.advance(pack, own[0], h, [now; 3], false)[2],
                     Memory::Lag(lag) => {
-                        let before = entry.before[pack];
+                        let before = R::since(!first, entry.before[pack], now);
                         let middle = (before + now) * 0.5;
                         lag.advance(pack, own[0], h, [before, middle, now], false)[2]
                     }

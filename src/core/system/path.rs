@@ -21,7 +21,7 @@ fn bare<R: LaneNumber>(from: R) -> R {
 /// y' = (u - y) / tau, solved exactly for an input that is constant or linear over a step.
 #[derive(Debug, Clone)]
 pub struct LagState<R> {
-    value: Vec<R>,
+    pub(super) value: Vec<R>,
     started: bool,
 }
 
@@ -47,10 +47,7 @@ impl<R: LaneNumber> LagState<R> {
     /// Advances over one step of length `h`; a time constant of 0 passes everything
     /// through untouched.
     pub fn advance(&mut self, pack: usize, tau: R, h: f64, u: Three<R>, held: bool) -> Three<R> {
-        if !self.started {
-            self.value[pack] = u[0];
-        }
-        let y = self.value[pack];
+        let y = R::since(self.started, self.value[pack], u[0]);
         let over = |part: f64| (-(R::constant(h * part) / tau)).exp();
         let full = over(1.0);
         let answer = if held {
@@ -106,6 +103,9 @@ impl<R: LaneNumber> DelayLine<R> {
 
     /// Stores a pack's value at the start of the step and reads the three delayed values.
     pub fn advance(&mut self, pack: usize, delay: R, h: f64, u: Three<R>, held: bool) -> Three<R> {
+        if let Some(answer) = R::delayed(self.depth, delay / h, u, held) {
+            return answer;
+        }
         self.ring[self.head * self.packs + pack] = u[0];
         let mut answer = u;
         for lane in 0..R::LANES {
@@ -157,7 +157,7 @@ impl<R: LaneNumber> DelayLine<R> {
 /// Play: the output follows only once the input has crossed the gap of +-width.
 #[derive(Debug, Clone)]
 pub struct PlayState<R> {
-    value: Vec<R>,
+    pub(super) value: Vec<R>,
     started: bool,
 }
 
@@ -183,7 +183,7 @@ impl<R: LaneNumber> PlayState<R> {
     /// The answer at a trial value, without moving.
     #[inline(always)]
     pub fn trial(&self, pack: usize, width: R, u: R) -> R {
-        let from = if self.started { self.value[pack] } else { u };
+        let from = R::since(self.started, self.value[pack], u);
         from.max(u - width).min(u + width)
     }
 

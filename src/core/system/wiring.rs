@@ -2,7 +2,7 @@
 
 use crate::effect::{EffectBlock, EffectCall, Mechanism};
 use crate::model::{Dual32, Dual64, LaneNumber};
-use crate::real::{F32x16, F64x8};
+use crate::real::{F32x16, F64x8, Trace};
 
 use super::lane::{Lane, Route};
 use super::path::PlayState;
@@ -33,7 +33,9 @@ macro_rules! effect_number {
     )*};
 }
 
-effect_number!(F64x8 => F64, F32x16 => F32, Dual64 => Dual64, Dual32 => Dual32);
+effect_number!(
+    F64x8 => F64, F32x16 => F32, Dual64 => Dual64, Dual32 => Dual32, Trace => Trace
+);
 
 /// One lane's own wiring, looked up.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -310,6 +312,19 @@ impl<R: EffectNumber> Wiring<R> {
             }
         }
         value
+    }
+
+    /// Puts other numbers in the place of its knobs, pack by pack of all slots.
+    pub fn take_knobs(&mut self, plan: &Plan, knobs: &[R]) {
+        let (from, n) = (plan.slots[self.slot].knobs, plan.slots[self.slot].card.knobs.len());
+        for (pack, own) in self.knobs.chunks_exact_mut(n.max(1)).enumerate() {
+            own.copy_from_slice(&knobs[pack * plan.knobs + from..][..n]);
+        }
+    }
+
+    /// What it remembers beside its states.
+    pub fn remembered(&mut self) -> Option<&mut Vec<R>> {
+        self.play.as_mut().map(|play| &mut play.value)
     }
 
     /// Lets what remembers values, not rates, take over the step's end.

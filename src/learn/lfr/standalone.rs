@@ -239,6 +239,8 @@ impl Law for AugmentedModel {
             Call::F32(question, out) => self.reply(ask, question, out),
             Call::Dual64(question, out) => self.reply(ask, question, out),
             Call::Dual32(question, out) => self.reply(ask, question, out),
+            Call::Trace(question, out) => self.reply(ask, question, out),
+            Call::Trace(question, out) => self.reply(ask, question, out),
         }
     }
 

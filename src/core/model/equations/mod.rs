@@ -161,6 +161,7 @@ impl Law for Equations {
             Call::F32(block, out) => self.run(ask, block, out),
             Call::Dual64(block, out) => self.run(ask, block, out),
             Call::Dual32(block, out) => self.run(ask, block, out),
+            Call::Trace(block, out) => self.run(ask, block, out),
         }
     }
 

@@ -6,7 +6,7 @@ use super::function::{Function, Pair};
 use super::program::{Code, List, Program};
 use crate::model::{Block, Dual32, Dual64};
 use crate::per_lanes;
-use crate::real::{F32x16, F64x8, InRegisters, Real};
+use crate::real::{F32x16, F64x8, InRegisters, Real, Trace};
 
 /// Packs that one instruction is run for at once: enough that finding out what to do costs
 /// little, few enough that the registers of a program stay in the processor's first cache.
@@ -35,7 +35,7 @@ macro_rules! stored {
     )*};
 }
 
-stored!(F64x8, F32x16, Dual64, Dual32);
+stored!(F64x8, F32x16, Dual64, Dual32, Trace);
 
 /// Answers a block with a program that gives as many values as the answer has.
 ///
