@@ -6,6 +6,7 @@ pub use lacuna_core::{
 };
 pub use lacuna_diagnose as diagnose;
 pub use lacuna_estimate as estimate;
+pub use lacuna_export as export;
 pub use lacuna_learn::{encoder, lfr, network, train};
 pub use lacuna_likelihood as likelihood;
 pub use lacuna_plugins as plugins;

@@ -3,6 +3,7 @@
 mod columns;
 mod diagnose;
 mod estimate;
+mod export;
 mod look;
 mod man;
 mod new;
@@ -16,6 +17,7 @@ use clap::{Args as Arguments, Parser, Subcommand};
 pub use columns::Columns;
 pub use diagnose::Diagnose;
 pub use estimate::Estimate;
+pub use export::{Export, ExportTo};
 pub use look::Look;
 pub use man::Man;
 pub use new::New;
@@ -170,6 +172,11 @@ pub enum Command {
     /// Prints the manual page, or writes those of all commands into a folder
     #[command(after_help = "Example:\n  lacuna man --out ~/.local/share/man/man1")]
     Man(Man),
+    /// Writes a model as C, FMU, MATLAB function or Python class, with a test that it is the same
+    #[command(
+        after_help = "Example:\n  lacuna export lacuna-out/extended.toml --to fmu --out press"
+    )]
+    Export(Export),
     /// Lists the registered models
     #[command(after_help = "Example:\n  lacuna models --json")]
     Models,

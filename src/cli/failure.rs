@@ -9,6 +9,7 @@ use lacuna::data::DataError;
 use lacuna::diagnose::DiagnoseError;
 use lacuna::estimate::LinearError;
 use lacuna::evaluate::EvaluateError;
+use lacuna::export::ExportError;
 use lacuna::fault::{Explain, Kind, Place};
 use lacuna::file::FileError;
 use lacuna::lfr::LfrError;
@@ -153,6 +154,7 @@ explained!(
     LinearError,
     SystemError,
     DiagnoseError,
+    ExportError,
     LfrError,
     TrainError,
     StudyError

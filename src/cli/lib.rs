@@ -11,6 +11,7 @@ mod console;
 mod demo;
 mod diagnose;
 mod estimate;
+mod export;
 mod failure;
 mod fit;
 mod generate;
@@ -68,6 +69,7 @@ fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         Command::Report(report) => reported::run(report, look),
         Command::New(new) => new::run(new, look),
         Command::Man(man) => man::run(man, look),
+        Command::Export(export) => export::run(export, look),
         Command::Models => list::models(look),
         Command::Effects => list::effects(look),
         Command::Completions { shell } => list::completions(*shell, look),

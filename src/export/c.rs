@@ -267,8 +267,7 @@ pub fn test_vector(model: &Model<'_>) -> String {
         let width = count.max(1);
         let mut text = format!("static const double {name}[{}][{width}] = {{\n", vector.len());
         for k in 0..vector.len() {
-            let row: Vec<String> =
-                series.iter().map(|s| number(s[k], "INFINITY", "NAN")).collect();
+            let row: Vec<String> = series.iter().map(|s| number(s[k], "INFINITY", "NAN")).collect();
             let row = if row.is_empty() { "0.0".into() } else { row.join(", ") };
             let _ = writeln!(text, "    {{{row}}},");
         }

@@ -13,6 +13,8 @@ mod matlab;
 mod names;
 mod python;
 mod syntax;
+#[cfg(test)]
+mod tests;
 mod vector;
 
 use lacuna_core::{fault, real, system};

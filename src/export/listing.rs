@@ -35,9 +35,8 @@ impl<'a> Listing<'a> {
         let mut listing = Self { step, still, prepared: HashMap::new(), order: vec![] };
         let roots = listing.roots();
         let needed = listing.cone(&roots, true);
-        let is_work = |node: Node| {
-            !matches!(terms[node as usize], Term::Constant(_) | Term::Given(_))
-        };
+        let is_work =
+            |node: Node| !matches!(terms[node as usize], Term::Constant(_) | Term::Given(_));
         for (i, _) in needed.iter().enumerate().filter(|(_, needed)| **needed) {
             let users = terms[i].operands().collect::<Vec<_>>();
             let from_outside = roots.contains(&(i as Node)).then_some(i as Node);

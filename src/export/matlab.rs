@@ -120,7 +120,10 @@ fn function(model: &Model<'_>) -> String {
         .replace("@NN@", &(step.remembered.len() + lines.len()).to_string())
         .replace("%   @HELP@\n", &help)
         .replace("  @PARAMETERS@\n", &values)
-        .replace("  @PREPARE@\n", &indent(listing.preparation(&Matlab, &|i| format!("c({})", i + 1))))
+        .replace(
+            "  @PREPARE@\n",
+            &indent(listing.preparation(&Matlab, &|i| format!("c({})", i + 1))),
+        )
         .replace("  @OUTPUT@\n", &indent(listing.outputs(&Matlab, &|i| format!("y({})", i + 1))))
         .replace("  @ADVANCE@\n", &indent(next))
 }

@@ -3,8 +3,8 @@
 /// Words that a function cannot be called in one of the languages.
 const TAKEN: [&str; 24] = [
     "auto", "break", "case", "class", "const", "def", "double", "else", "end", "enum", "float",
-    "for", "function", "if", "int", "long", "main", "return", "short", "static", "struct", "switch",
-    "void", "while",
+    "for", "function", "if", "int", "long", "main", "return", "short", "static", "struct",
+    "switch", "void", "while",
 ];
 
 /// Whether functions and files may be called so.

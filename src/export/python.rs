@@ -94,9 +94,8 @@ fn class(model: &Model<'_>) -> String {
     let body = |lines: Vec<String>| -> String {
         lines.iter().map(|line| format!("        {line}\n")).collect()
     };
-    let names = |signals: &[lacuna_core::model::Signal]| {
-        tuple(signals.iter().map(|s| literal(&s.name)))
-    };
+    let names =
+        |signals: &[lacuna_core::model::Signal]| tuple(signals.iter().map(|s| literal(&s.name)));
     let mut parameters = String::new();
     for parameter in &step.parameters {
         let value = number(parameter.value, "np.inf", "np.nan");

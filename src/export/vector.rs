@@ -43,7 +43,7 @@ impl Vector {
             let drive = Drive {
                 inputs,
                 segments: std::iter::once(0..SAMPLES).collect(),
-                origins: vec![0],
+                clocks: vec![0.0],
             };
             let track = system.run(&plan, &drive, std::slice::from_ref(&lane)).swap_remove(0);
             if track.is_finite() {

@@ -266,18 +266,18 @@ per_lanes! {
 /// The same for any number.
 #[inline(always)]
 fn each<E: Effect, R: Real>(effect: &E, block: &EffectBlock<'_, R>, w: &mut [R], rates: &mut [R]) {
-        let packs = block.packs.max(1);
-        let knobs = block.knobs.len() / packs;
-        let states = block.states.len() / packs;
-        let seen = block.coordinates.len() / packs;
-        for pack in 0..block.packs {
-            let at = Felt {
-                knobs: &block.knobs[pack * knobs..][..knobs],
-                coordinates: &block.coordinates[pack * seen..][..seen],
-                rate: block.rate[pack],
-                has_rate: block.has_rate,
-                states: &block.states[pack * states..][..states],
-            };
-            w[pack] = effect.law(&at, &mut rates[pack * states..][..states]);
-        }
+    let packs = block.packs.max(1);
+    let knobs = block.knobs.len() / packs;
+    let states = block.states.len() / packs;
+    let seen = block.coordinates.len() / packs;
+    for pack in 0..block.packs {
+        let at = Felt {
+            knobs: &block.knobs[pack * knobs..][..knobs],
+            coordinates: &block.coordinates[pack * seen..][..seen],
+            rate: block.rate[pack],
+            has_rate: block.has_rate,
+            states: &block.states[pack * states..][..states],
+        };
+        w[pack] = effect.law(&at, &mut rates[pack * states..][..states]);
+    }
 }

@@ -205,13 +205,13 @@ impl Real for Trace {
         if self.node.is_none() {
             return if self.value > 0.0 { yes } else { no };
         }
-        let term =
-            |tape: &mut Tape| Term::Choice(self.on(tape), yes.on(tape), no.on(tape));
+        let term = |tape: &mut Tape| Term::Choice(self.on(tape), yes.on(tape), no.on(tape));
         Self { value, node: Tape::note(term) }
     }
 }
 
 impl InRegisters for Trace {
+    type Plain = Self;
     type Avx512 = Self;
     type Avx2 = Self;
 }
@@ -223,7 +223,8 @@ mod tests {
     #[test]
     fn equal_terms_are_there_once_and_what_is_known_is_computed() {
         let (y, tape) = Tape::record(|| {
-            let (a, x) = (Trace::given(Given::Parameter(0), 3.0), Trace::given(Given::State(0), 2.0));
+            let (a, x) =
+                (Trace::given(Given::Parameter(0), 3.0), Trace::given(Given::State(0), 2.0));
             let two = Trace::constant(1.0) + 1.0;
             let nothing = x * 0.0;
             let y = (a * x + nothing) * 1.0;

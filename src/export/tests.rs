@@ -1,0 +1,159 @@
+//! Every model and effect of the library, compiled by a C compiler and compared.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use lacuna_plugins as _;
+
+use crate::{Target, export};
+use lacuna_core::file::load;
+use lacuna_core::register::{PlugIn, registered};
+
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("lacuna-export-{}-{name}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// Exports a model file's text; the folder.
+fn exported(name: &str, text: &str, target: Target) -> PathBuf {
+    let folder = folder(name);
+    let file = folder.join("of.toml");
+    std::fs::write(&file, text).unwrap();
+    let system = load(&file).unwrap_or_else(|error| panic!("{name}: {error}\n{text}"));
+    export(&system, target, "model", &folder).unwrap_or_else(|error| panic!("{name}: {error}"));
+    folder
+}
+
+fn ran(folder: &Path, program: &str, arguments: &[&str]) -> String {
+    let made = Command::new(program).current_dir(folder).args(arguments).output().unwrap();
+    let said = String::from_utf8_lossy(&made.stdout).to_string();
+    let wrong = String::from_utf8_lossy(&made.stderr);
+    assert!(made.status.success(), "{}: {program}: {said}{wrong}", folder.display());
+    said
+}
+
+/// Compiles with every warning an error, and compares with the test vector.
+fn compare(name: &str, text: &str) {
+    let folder = exported(name, text, Target::C);
+    let flags = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-o", "test"];
+    ran(&folder, "cc", &[&flags[..], &["model.c", "main_test.c", "-lm"]].concat());
+    let said = ran(&folder, "./test", &[]);
+    assert!(said.contains("largest difference"), "{said}");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+const DUFFING: &str =
+    "model.duffing = { mass = 1.0, damping = 0.5, stiffness = 100.0, hardening = 1000.0 }\n";
+
+fn header(more: &str) -> String {
+    format!("sampling_time = 0.01\n{more}")
+}
+
+#[test]
+fn every_registered_model_is_the_simulation() {
+    let mut count = 0;
+    for card in registered() {
+        let PlugIn::Model { example } = card.plug_in else { continue };
+        if example.is_empty() {
+            continue;
+        }
+        compare(card.name, &header(&format!("[model.{}]\n{example}", card.name)));
+        count += 1;
+    }
+    assert!(count >= 5, "{count} models have an example");
+}
+
+#[test]
+fn integrators_and_holds_are_those_of_the_simulation() {
+    for (name, more) in [
+        ("euler", "integrator = { method = \"euler\", substeps = 4 }\n"),
+        ("first", "hold = \"first\"\nintegrator = { substeps = 3 }\n"),
+    ] {
+        compare(name, &header(&format!("{more}{DUFFING}")));
+    }
+}
+
+#[test]
+fn effects_of_every_way_are_the_simulation() {
+    let entry = |into: &str, of: &str, effect: &str| {
+        let of = if of.is_empty() { String::new() } else { format!("of = \"{of}\"\n") };
+        format!("[[effects]]\ninto = \"{into}\"\n{of}effect.{effect}\n")
+    };
+    let signals = |text: &str| {
+        let folder = folder("signals");
+        let file = folder.join("of.toml");
+        std::fs::write(&file, text).unwrap();
+        let signals = load(&file).unwrap().signals();
+        let own =
+            |s: Vec<lacuna_core::model::Signal>| s.into_iter().map(|s| s.name).collect::<Vec<_>>();
+        (
+            own(signals.own_channels()),
+            own(signals.own_coordinates()),
+            signals.inputs[0].name.clone(),
+            signals.outputs[0].name.clone(),
+        )
+    };
+    let base = header(DUFFING);
+    let (channels, coordinates, input, output) = signals(&base);
+    let channel = channels.last().unwrap();
+    let (p, v) = (&coordinates[0], coordinates.last().unwrap());
+    let effects = [
+        ("friction", entry(channel, v, "coulomb_friction = { level = 0.3, width = 0.01 }")),
+        ("hysteresis", entry(channel, p, "hysteresis = { alpha = 20.0, beta = 3.0, gamma = 1.0 }")),
+        ("delay", entry(&input, &input, "delay = { delay = 0.034 }")),
+        ("output_delay", entry(&output, &output, "delay = { delay = 0.017 }")),
+        ("lag", entry(&input, &input, "lag = { time_constant = 0.03 }")),
+        ("output_lag", entry(&output, &output, "lag = { time_constant = 0.03 }")),
+        ("cubic", entry(channel, p, "cubic = { coefficient = 40.0 }")),
+        (
+            "free_form",
+            entry(
+                channel,
+                p,
+                "free_form = { knots = [-0.01, 0.0, 0.02], values = [1.0, 0.0, -2.0] }",
+            ),
+        ),
+        ("parameter", entry("stiffness", "", "parameter = { value = 130.0 }")),
+    ];
+    let substeps = "integrator = { substeps = 2 }\n";
+    for hold in ["zero", "first"] {
+        let before = format!("sampling_time = 0.01\nhold = \"{hold}\"\n{substeps}{DUFFING}");
+        for (name, effect) in &effects {
+            compare(&format!("{name}-{hold}"), &format!("{before}{effect}"));
+        }
+        let all: String = effects.iter().map(|(_, effect)| effect.as_str()).collect();
+        compare(&format!("all-{hold}"), &format!("{before}{all}"));
+    }
+}
+
+#[test]
+fn python_and_matlab_are_the_simulation() {
+    let text = format!(
+        "{}[[effects]]\ninto = \"u\"\nof = \"u\"\neffect.delay = {{ delay = 0.034 }}\n",
+        header(&format!("hold = \"first\"\n{DUFFING}"))
+    );
+    let run = |name: &str, target, program: &str, arguments: &[&str]| {
+        let there = Command::new(program).arg("--version").output().is_ok();
+        let numpy = program != "python3"
+            || Command::new(program).args(["-c", "import numpy"]).status().unwrap().success();
+        let folder = exported(name, &text, target);
+        if there && numpy {
+            ran(&folder, program, arguments);
+        }
+        std::fs::remove_dir_all(&folder).unwrap();
+    };
+    run("python", Target::Python, "python3", &["test_model.py"]);
+    run("matlab", Target::Matlab, "octave", &["--no-gui", "--quiet", "test_model.m"]);
+}
+
+#[test]
+fn a_name_that_no_function_can_have_is_refused() {
+    let folder = folder("name");
+    let file = folder.join("of.toml");
+    std::fs::write(&file, header(DUFFING)).unwrap();
+    let system = load(&file).unwrap();
+    let error = export(&system, Target::C, "for", &folder).unwrap_err();
+    assert!(error.to_string().contains("`for`"), "{error}");
+    assert!(!folder.join("for.c").exists());
+}
