@@ -3,8 +3,8 @@
 //! A unit is a zip file with a description, the C source, and a binary where a C compiler is
 //! there. Its step is the model's sampling time, or a whole number of them.
 
-use std::collections::BTreeSet;
-use std::fmt::Write as _;
+mod description;
+
 use std::io::{Cursor, Write as _};
 use std::process::Command;
 
@@ -41,15 +41,15 @@ pub fn files(model: &Model<'_>, remarks: &mut Vec<String>) -> Result<Files, Expo
         ];
         let compile = [format!("{name}.c"), wrapper_name];
         let description = match version {
-            2 => description2(model, &variables, &token, &compile),
-            _ => description3(model, &variables, &token),
+            2 => description::version2(model, &variables, &token, &compile),
+            _ => description::version3(model, &variables, &token),
         };
         let mut content = vec![("modelDescription.xml".to_string(), description.into_bytes())];
         for (file, text) in &sources {
             content.push((format!("sources/{file}"), text.clone().into_bytes()));
         }
         if version == 3 {
-            let build = build_description(name, &compile);
+            let build = description::build(name, &compile);
             content.push(("sources/buildDescription.xml".into(), build.into_bytes()));
         }
         let folder = if version == 2 { "linux64" } else { "x86_64-linux" };
@@ -133,137 +133,6 @@ fn token(source: &str) -> String {
         source.bytes().fold(start, |h, b| (h ^ u64::from(b)).wrapping_mul(0x0100_0000_01b3))
     };
     format!("{{{:016x}{:016x}}}", hash(0xcbf2_9ce4_8422_2325), hash(0x9ae1_6a3b_2f90_404f))
-}
-
-fn escaped(text: &str) -> String {
-    let kept: String = text.chars().filter(|c| !c.is_control()).collect();
-    kept.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
-}
-
-fn units(variables: &[Variable]) -> String {
-    let units: BTreeSet<&str> =
-        variables.iter().map(|v| v.unit.as_str()).filter(|unit| !unit.is_empty()).collect();
-    if units.is_empty() {
-        return String::new();
-    }
-    let each: String =
-        units.iter().map(|unit| format!("    <Unit name=\"{}\"/>\n", escaped(unit))).collect();
-    format!("  <UnitDefinitions>\n{each}  </UnitDefinitions>\n")
-}
-
-/// Attributes of a number.
-fn attributes(variable: &Variable) -> String {
-    let mut text = String::new();
-    if let Some(start) = variable.start {
-        let _ = write!(text, " start=\"{start:?}\"");
-    }
-    if !variable.unit.is_empty() {
-        let _ = write!(text, " unit=\"{}\"", escaped(&variable.unit));
-    }
-    text
-}
-
-/// How a variable changes and where its first value is from, as both versions write it.
-fn kind(variable: &Variable) -> &'static str {
-    match variable.causality {
-        "parameter" => "variability=\"tunable\" initial=\"exact\"",
-        "output" => "variability=\"continuous\" initial=\"calculated\"",
-        _ => "variability=\"continuous\"",
-    }
-}
-
-fn description2(
-    model: &Model<'_>,
-    variables: &[Variable],
-    token: &str,
-    compile: &[String],
-) -> String {
-    let (name, step) = (model.name, model.step.sampling_time);
-    let mut text = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"2.0\" \
-         modelName=\"{name}\" guid=\"{token}\" generationTool=\"lacuna\" \
-         variableNamingConvention=\"flat\">\n  <CoSimulation modelIdentifier=\"{name}\" \
-         canHandleVariableCommunicationStepSize=\"true\" canInterpolateInputs=\"{}\">\n    \
-         <SourceFiles>\n",
-        model.step.ramps
-    );
-    for file in compile {
-        let _ = writeln!(text, "      <File name=\"{file}\"/>");
-    }
-    let _ = write!(
-        text,
-        "    </SourceFiles>\n  </CoSimulation>\n{}  <DefaultExperiment startTime=\"0.0\" \
-         stepSize=\"{step:?}\"/>\n  <ModelVariables>\n",
-        units(variables)
-    );
-    for variable in variables {
-        let _ = writeln!(
-            text,
-            "    <ScalarVariable name=\"{}\" valueReference=\"{}\" causality=\"{}\" {}>\
-             <Real{}/></ScalarVariable>",
-            escaped(&variable.name),
-            variable.reference,
-            variable.causality,
-            kind(variable),
-            attributes(variable)
-        );
-    }
-    text += "  </ModelVariables>\n  <ModelStructure>\n";
-    let outputs = variables.iter().filter(|v| v.causality == "output");
-    // the index of a variable is its place in the list, from 1
-    let unknowns: String =
-        outputs.map(|v| format!("      <Unknown index=\"{}\"/>\n", v.reference)).collect();
-    if !unknowns.is_empty() {
-        let _ = write!(
-            text,
-            "    <Outputs>\n{unknowns}    </Outputs>\n    <InitialUnknowns>\n{unknowns}    \
-             </InitialUnknowns>\n"
-        );
-    }
-    text + "  </ModelStructure>\n</fmiModelDescription>\n"
-}
-
-fn description3(model: &Model<'_>, variables: &[Variable], token: &str) -> String {
-    let (name, step) = (model.name, model.step.sampling_time);
-    let mut text = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiModelDescription fmiVersion=\"3.0\" \
-         modelName=\"{name}\" instantiationToken=\"{token}\" generationTool=\"lacuna\">\n  \
-         <CoSimulation modelIdentifier=\"{name}\" \
-         canHandleVariableCommunicationStepSize=\"true\" fixedInternalStepSize=\"{step:?}\"/>\n\
-         {}  <DefaultExperiment startTime=\"0.0\" stepSize=\"{step:?}\"/>\n  <ModelVariables>\n    \
-         <Float64 name=\"time\" valueReference=\"0\" causality=\"independent\" \
-         variability=\"continuous\"/>\n",
-        units(variables)
-    );
-    for variable in variables {
-        let _ = writeln!(
-            text,
-            "    <Float64 name=\"{}\" valueReference=\"{}\" causality=\"{}\" {}{}/>",
-            escaped(&variable.name),
-            variable.reference,
-            variable.causality,
-            kind(variable),
-            attributes(variable)
-        );
-    }
-    text += "  </ModelVariables>\n  <ModelStructure>\n";
-    for element in ["Output", "InitialUnknown"] {
-        for variable in variables.iter().filter(|v| v.causality == "output") {
-            let _ = writeln!(text, "    <{element} valueReference=\"{}\"/>", variable.reference);
-        }
-    }
-    text + "  </ModelStructure>\n</fmiModelDescription>\n"
-}
-
-fn build_description(name: &str, compile: &[String]) -> String {
-    let files: String =
-        compile.iter().map(|file| format!("      <SourceFile name=\"{file}\"/>\n")).collect();
-    format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<fmiBuildDescription fmiVersion=\"3.0\">\n  \
-         <BuildConfiguration modelIdentifier=\"{name}\">\n    <SourceFileSet language=\"C99\">\n\
-         {files}    </SourceFileSet>\n    <Library name=\"m\"/>\n  </BuildConfiguration>\n\
-         </fmiBuildDescription>\n"
-    )
 }
 
 /// The shared library, where there is a C compiler for the machine that the units name.

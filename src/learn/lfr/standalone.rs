@@ -240,7 +240,6 @@ impl Law for AugmentedModel {
             Call::Dual64(question, out) => self.reply(ask, question, out),
             Call::Dual32(question, out) => self.reply(ask, question, out),
             Call::Trace(question, out) => self.reply(ask, question, out),
-            Call::Trace(question, out) => self.reply(ask, question, out),
         }
     }
 
