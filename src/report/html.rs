@@ -70,7 +70,7 @@ impl Page {
             ),
             None => (String::new(), String::new()),
         };
-        let data = match self.figures.is_empty() {
+        let data = match self.figures.is_empty() && self.again.is_none() {
             true => String::new(),
             false => {
                 let charts = serde_json::to_string(&Charts::of(&self.figures)).unwrap_or_default();

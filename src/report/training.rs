@@ -209,3 +209,30 @@ impl<'a> TrainingReport<'a> {
         page.table(&header.iter().map(|h| &h[..]).collect::<Vec<_>>(), &rows);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_training_that_goes_on_says_so_and_loads_itself_again() {
+        let epoch = |epoch: usize| Epoch {
+            epoch,
+            loss: (epoch > 0).then_some(1.0 / epoch as f64),
+            score: None,
+            best: epoch == 1,
+            rolled_back: 0,
+            rate: 1e-3,
+        };
+        let history: Vec<Epoch> = (0..=2).map(epoch).collect();
+        let outputs = [("y".to_string(), "m".to_string())];
+        let html = TrainingReport::running(&history, 40, &outputs, &[10]).html();
+        assert!(html.contains("Epoch 2 of 40; the model of epoch 1 is the best so far."));
+        assert!(html.contains(&format!("data-again=\"{AGAIN}\"")));
+        assert_eq!(html.matches("<figure ").count(), 1);
+        // nothing is drawn before there is a loss, and nothing fails
+        let first = TrainingReport::running(&history[..1], 40, &outputs, &[10]).html();
+        assert!(first.contains("Nothing to draw.") && !first.contains("<figure "));
+        assert_eq!(first.matches("<script").count(), 2, "what loads it again");
+    }
+}
