@@ -3,12 +3,12 @@
 use std::time::Instant;
 
 use super::alone::Alone;
-use super::dependence::DEPENDS;
 use super::distortion::distortion;
 use super::error::DiagnoseError;
-use super::faults::{Fault, coarse, flipped, retimed, strike};
-use super::finding::{Finding, RecordFacts, Track};
+use super::faults::{Fault, coarse};
+use super::finding::{Finding, RecordFacts};
 use super::library::{Allowed, Method};
+use super::mended::Mended;
 use super::note::Note;
 use super::overlap::refuse_overlap;
 use super::prepared::{Prepared, windows};
@@ -18,7 +18,7 @@ use super::searched::{Around, Searched};
 use super::stretches::horizon;
 use super::teller::Source;
 use crate::data::Record;
-use crate::evaluate::{EvaluateError, Init, Run, Simulation};
+use crate::evaluate::{EvaluateError, Init, Run};
 use crate::system::System;
 use crate::watch::Watch;
 
@@ -27,24 +27,9 @@ pub(super) const FIT: f64 = 0.7;
 /// Shares when the estimation data must serve as test data too.
 const FIT_OF_ALL: f64 = 0.6;
 const TEST_OF_ALL: f64 = 0.2;
-/// A cause in the machine explains as much as a wrong clock if it removes so much less at most.
-const AS_MUCH: f64 = 0.02;
-/// Parameters named as wrong beside a wrong clock from which on they may be all that is wrong.
-const SEVERAL: usize = 2;
-
 /// First sample of the part of a record that is kept for the test where there is no other.
 pub(super) fn kept_from(record: &Record) -> usize {
     ((1.0 - TEST_OF_ALL) * record.len() as f64) as usize
-}
-
-/// Records without the faults that were found in them.
-#[derive(Clone)]
-struct Mended {
-    records: Vec<Record>,
-    test: Option<Record>,
-    faults: Vec<Fault>,
-    /// What is wrong with their clock, if nothing in the machine is.
-    clock: Option<Fault>,
 }
 
 /// What was found before it is put together.
@@ -214,67 +199,6 @@ impl<'a> Diagnosis<'a> {
         };
         let alone = self.alone(&searched, &records, watch)?;
         Ok(Looked { searched, faults, notes: vec![], alone })
-    }
-
-    /// Strikes out what instruments made up, and turns a column of the wrong sign.
-    fn mended(&self, records: &[Record], test: Option<&Record>) -> Result<Mended, EvaluateError> {
-        let (mut all, mut faults) = (vec![], vec![]);
-        for (record, first) in records.iter().zip(firsts(records)) {
-            let run = Simulation::of(self.system, record, Init::Forgotten)?;
-            let (mended, found) = strike(record, &run.outputs, first);
-            all.push(mended);
-            faults.extend(found);
-        }
-        let mut test = match test {
-            Some(record) => {
-                let run = Simulation::of(self.system, record, Init::Forgotten)?;
-                Some(strike(record, &run.outputs, 0).0)
-            }
-            None => None,
-        };
-        // most records have the sign that they should have
-        let (turned, mut clock) =
-            rayon::join(|| flipped(self.system, &all), || retimed(self.system, &all));
-        if let Some(fault) = turned? {
-            all = all.iter().map(|record| fault.mend(record)).collect();
-            test = test.map(|record| fault.mend(&record));
-            faults.insert(0, fault);
-            clock = retimed(self.system, &all);
-        }
-        Ok(Mended { records: all, test, faults, clock: clock? })
-    }
-
-    /// A record whose clock seems to be wrong: if one cause in the machine explains as much, the
-    /// machine is to blame and the clock is another name of that. Parameters that have to move
-    /// whatever the clock says are to blame as well. Says whether the clock is to blame.
-    fn clocked(
-        &self,
-        records: &[Record],
-        test: Option<&Record>,
-        fault: &Fault,
-        watch: &dyn Watch,
-    ) -> Result<(Searched, bool), DiagnoseError> {
-        let one = self.search(records, test, 1, watch)?;
-        if one.causes.len() == 1 && one.gain.error_removed >= fault.removed - AS_MUCH {
-            let searched = self.search(records, test, self.max_causes, watch)?;
-            return Ok((searched.or_else(fault.alternative()), false));
-        }
-        let mended: Vec<Record> = records.iter().map(|r| fault.mend(r)).collect();
-        let mended_test = test.map(|record| fault.mend(record));
-        let searched = self.search(&mended, mended_test.as_ref(), self.max_causes, watch)?;
-        if one.track == Track::ParametersFree && !searched.causes.is_empty() {
-            let machine = self.search(records, test, self.max_causes, watch)?;
-            let nothing_left = machine.dependence < DEPENDS;
-            let parameters =
-                |of: &Searched| of.causes.iter().filter(|cause| cause.is_parameter()).count();
-            let laws = |of: &Searched| of.causes.len() - parameters(of);
-            // parameters that are wrong anyway may make up for a clock, however many it takes
-            let anyway = parameters(&searched) >= SEVERAL && laws(&machine) <= laws(&searched);
-            if nothing_left && (anyway || machine.causes.len() <= searched.causes.len() + 1) {
-                return Ok((machine.or_else(fault.alternative()), false));
-            }
-        }
-        Ok((searched, true))
     }
 
     /// The search for what the model itself gets wrong, on records without faults but spikes.

@@ -37,6 +37,7 @@ mod learned;
 mod library;
 mod limits;
 mod measure;
+mod mended;
 mod moved;
 mod naming;
 mod nominal;
