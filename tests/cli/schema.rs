@@ -80,6 +80,7 @@ fn documents_are_what_their_schemas_say() {
         ("diagnose --model m.toml --data d.csv --out found", "diagnosis", 0),
         ("look --data d.csv --out looked", "look", 0),
         ("new duffing", "new", 0),
+        ("export l.toml --to c --out source", "export", 0),
         ("models", "models", 0),
         ("effects", "effects", 0),
         ("simulate --model no.toml --data d.csv", "error", 2),
