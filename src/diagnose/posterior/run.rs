@@ -188,3 +188,7 @@ fn told(mut study: Study<'_, '_>, first: Option<Screen>, dependence: f64) -> Opt
     let nuisance = study.nuisance(headline.free).clone();
     Some(Searched { found, free: headline.free, nuisance })
 }
+
+#[cfg(test)]
+#[path = "run_tests.rs"]
+mod tests;
