@@ -5,7 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Files of one concept that needs more than 300 lines; 450 are the limit.
-const LONGER: [&str; 12] = [
+const LONGER: [&str; 13] = [
+    "src/core/effect/written.rs",
     "src/core/data/error.rs",
     "src/diagnose/finding.rs",
     "src/diagnose/problem.rs",

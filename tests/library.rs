@@ -6,6 +6,7 @@ mod contract;
 mod encoder;
 mod files;
 mod fitted_model;
+mod fuzz;
 mod house;
 mod linear;
 mod optimise;

@@ -31,6 +31,11 @@ impl Effect for CoulombFriction {
         .rank(2)
     }
 
+    fn fault(&self) -> Option<Fault> {
+        let width = self.width;
+        (!(width > 0.0)).then(|| Fault::new("width", width, "a speed above 0"))
+    }
+
     fn title(&self, named: &Named) -> String {
         if named.bare { "A jump at zero" } else { "Dry friction" }.into()
     }

@@ -22,6 +22,17 @@ impl Effect for FreeForm {
         card.shape_of(ShapeOf::FreeCurve).rank(9)
     }
 
+    fn fault(&self) -> Option<Fault> {
+        let (knots, values) = (&self.knots, &self.values);
+        if knots.len() != values.len() {
+            let found = format!("a list of {}", values.len());
+            return Some(Fault::new("values", found, format!("as many as knots, {}", knots.len())));
+        }
+        let fallen = knots.windows(2).find(|pair| !(pair[1] > pair[0]))?;
+        let found = format!("{} after {}", fallen[1], fallen[0]);
+        Some(Fault::new("knots", found, "values that rise from knot to knot"))
+    }
+
     fn title(&self, _: &Named) -> String {
         "A law of unknown shape".into()
     }

@@ -35,6 +35,10 @@ impl Effect for Hinge {
         .rank(4)
     }
 
+    fn fault(&self) -> Option<Fault> {
+        (self.side.abs() != 1.0).then(|| Fault::new("side", self.side, "1 (above the start) or -1"))
+    }
+
     fn title(&self, _: &Named) -> String {
         "A one-sided law".into()
     }

@@ -30,6 +30,11 @@ impl Effect for Saturation {
         .rank(2)
     }
 
+    fn fault(&self) -> Option<Fault> {
+        let (low, high) = (self.low?, self.high?);
+        (low > high).then(|| Fault::new("low", low, format!("a value not above `high`, {high}")))
+    }
+
     fn title(&self, _: &Named) -> String {
         "Saturation".into()
     }

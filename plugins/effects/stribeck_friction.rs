@@ -37,6 +37,12 @@ impl Effect for StribeckFriction {
         .rank(4)
     }
 
+    fn fault(&self) -> Option<Fault> {
+        let wrong =
+            [("width", self.width), ("speed", self.speed)].into_iter().find(|v| !(v.1 > 0.0));
+        wrong.map(|(key, value)| Fault::new(key, value, "a speed above 0"))
+    }
+
     fn title(&self, named: &Named) -> String {
         if named.bare { "A jump at zero with a bump" } else { "Dry friction with a Stribeck bump" }
             .into()

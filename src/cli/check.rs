@@ -11,8 +11,12 @@ use lacuna::diagnose::Diagnosis;
 use lacuna::digits::number;
 use lacuna::report::{cause_document, sentences};
 
+/// Exit status where somebody stopped the check before it had a verdict.
+const NO_VERDICT: u8 = 1;
 /// Exit status where the data reject the model.
 const REJECTED: u8 = 3;
+/// Exit status where the data are at fault in a way that changes what was measured.
+const DATA_REJECTED: u8 = 4;
 
 pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
     outputs::distinct(&args.on.data, &[])?;
@@ -21,28 +25,44 @@ pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
     look.hear_interrupts()?;
     let checked = Diagnosis::of(&system).max_causes(1).check(&records, look)?;
     look.clear();
-    let rejected = checked.p_value < args.level;
-    let p = number(checked.p_value, None);
-    look.headline(&if rejected {
-        format!("These data reject the model (p = {p}, level {}).", args.level)
-    } else {
-        format!("These data do not reject the model (p = {p}, level {}).", args.level)
+    let rejected = checked.p_value.map(|p| p < args.level);
+    let data_rejected = checked.rejects_data();
+    let p = checked.p_value.map_or_else(String::new, |p| number(p, None));
+    if data_rejected {
+        look.headline("These data are at fault: what was measured is not what the machine did.");
+    }
+    look.headline(&match rejected {
+        None => "Interrupted: there is no verdict.".into(),
+        Some(true) => format!("These data reject the model (p = {p}, level {}).", args.level),
+        Some(false) => {
+            format!("These data do not reject the model (p = {p}, level {}).", args.level)
+        }
     });
     let first = checked.first_cause.as_ref();
     let document_of = |cause| cause_document(cause).map_err(Failure::unwritable);
-    if let Some(cause) = first {
+    let of_the_model = first.filter(|cause| !checked.data_faults.contains(cause));
+    for cause in checked.data_faults.iter().chain(of_the_model) {
         look.result(&sentences::cause(cause));
     }
+    let faults: Vec<_> =
+        checked.data_faults.iter().map(document_of).collect::<Result<_, Failure>>()?;
     let mut document = json!({
         "schema": 1,
         "rejected": rejected,
         "p_value": checked.p_value,
         "level": args.level,
         "first_cause": first.map(document_of).transpose()?,
+        "data_faults": faults,
+        "data_rejected": data_rejected,
     });
     if checked.interrupted {
         document["interrupted"] = json!(true);
     }
     look.document(&document);
-    Ok(if rejected { REJECTED } else { 0 })
+    Ok(match rejected {
+        None => NO_VERDICT,
+        _ if data_rejected => DATA_REJECTED,
+        Some(true) => REJECTED,
+        Some(false) => 0,
+    })
 }

@@ -7,9 +7,11 @@ use super::console::Console;
 use super::failure::Failure;
 use super::input;
 use super::outputs;
+use lacuna::diagnose::Diagnosis;
 use lacuna::digits::number;
 use lacuna::estimate::{Estimated, estimate_with};
 use lacuna::file::save_with;
+use lacuna::report::{cause_document, sentences};
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     outputs::distinct(&args.data, &[])?;
@@ -21,6 +23,12 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     input::writable(&args.out)?;
     let records = input::records(&args.data, &want, &args.columns, look)?;
     look.hear_interrupts()?;
+    // what cannot be simulated with its present values yet is fitted to the records as they are
+    let (records, faults) =
+        Diagnosis::of(&system).data_faults(&records).unwrap_or((records, vec![]));
+    for fault in &faults {
+        look.result(&sentences::cause(fault));
+    }
     let estimate = estimate_with(&system, &records, &args.fix, seed, look)?;
     look.clear();
     save_with(&estimate.system, &args.out, &["Written by `lacuna estimate`.".into()])?;
@@ -46,6 +54,10 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
         "nrmse": { "before": before, "after": after },
         "model": args.out,
     });
+    if !faults.is_empty() {
+        let faults = faults.iter().map(cause_document).collect::<Result<Vec<_>, _>>();
+        document["data_faults"] = json!(faults.map_err(Failure::unwritable)?);
+    }
     if let Some(length) = estimate.stretch {
         document["stretch"] = json!(length);
     }

@@ -37,6 +37,7 @@ use clap::Parser;
 use args::{Args, Command};
 use console::Console;
 use failure::Failure;
+use lacuna::fault::Place;
 
 /// Runs the program with the process's arguments.
 pub fn main() -> ExitCode {
@@ -76,9 +77,22 @@ fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     }
 }
 
+/// Threads that are started at most, where the machine has few: more only wait for each other.
+const MOST_THREADS: usize = 256;
+
 /// Sets how many threads the library works with.
 fn threads(count: Option<usize>) -> Result<(), Failure> {
     let Some(count) = count else { return Ok(()) };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let most = MOST_THREADS.max(4 * cores);
+    if count > most {
+        let place = Place { key: Some("--threads".into()), ..Place::default() };
+        return Err(Failure::call_refused(
+            format!("--threads is {count}, and at most {most} are started"),
+            place,
+            format!("this machine has {cores}; leave --threads out to use all"),
+        ));
+    }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(count).build_global();
     pool.map_err(|error| Failure::work(format!("{count} threads cannot be started: {error}")))
 }

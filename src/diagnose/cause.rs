@@ -117,6 +117,10 @@ pub enum ColumnFault {
     Dropout(f64),
     /// The reading stood still at a value.
     Stuck(f64),
+    /// Every reading is this value, while the model says that the machine moves.
+    Dead(f64),
+    /// Readings that lie farther from all others than those from each other; the first of them.
+    Gross(f64),
     /// The converter has coarse steps: the step, and the rounding error's standard deviation over that
     /// of the noise.
     Quantisation(f64, f64),

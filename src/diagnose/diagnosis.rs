@@ -6,13 +6,14 @@ use super::alone::Alone;
 use super::distortion::distortion;
 use super::error::DiagnoseError;
 use super::faults::{Fault, coarse};
-use super::finding::{Finding, RecordFacts};
+use super::finding::{Finding, RecordFacts, Verdict};
 use super::library::{Allowed, Method};
 use super::mended::Mended;
 use super::note::Note;
 use super::overlap::refuse_overlap;
 use super::prepared::{Prepared, windows};
 use super::records::firsts;
+use super::resolution::unresolved;
 use super::score::{Counted, TestData};
 use super::searched::{Around, Searched};
 use super::stretches::horizon;
@@ -27,6 +28,7 @@ pub(super) const FIT: f64 = 0.7;
 /// Shares when the estimation data must serve as test data too.
 const FIT_OF_ALL: f64 = 0.6;
 const TEST_OF_ALL: f64 = 0.2;
+
 /// First sample of the part of a record that is kept for the test where there is no other.
 pub(super) fn kept_from(record: &Record) -> usize {
     ((1.0 - TEST_OF_ALL) * record.len() as f64) as usize
@@ -157,9 +159,15 @@ impl<'a> Diagnosis<'a> {
         for record in records {
             self.check_baseline(record)?;
         }
-        let looked = match horizon(self.system, records)? {
-            None => self.in_one_go(records, test, watch)?,
-            Some(length) => self.by_stretches(records, test, length, watch)?,
+        let looked = match unresolved(self.system, records)? {
+            Some(notes) => {
+                let searched = self.figures(records, test, watch)?;
+                Looked { searched, faults: vec![], notes, alone: vec![] }
+            }
+            None => match horizon(self.system, records)? {
+                None => self.in_one_go(records, test, watch)?,
+                Some(length) => self.by_stretches(records, test, length, watch)?,
+            },
         };
         let Looked { searched, mut faults, notes, alone } = looked;
         faults.extend(coarse(&searched.noise_floor, records));
@@ -181,6 +189,22 @@ impl<'a> Diagnosis<'a> {
         Ok(searched.finding(around))
     }
 
+    /// The baseline's figures, where there is nothing to search in.
+    fn figures(
+        &self,
+        records: &[Record],
+        test: Option<&Record>,
+        watch: &dyn Watch,
+    ) -> Result<Searched, DiagnoseError> {
+        let mut searched = self.search(records, test, 0, watch)?;
+        searched.verdict = Verdict::NothingFound;
+        searched.verdict_probability = None;
+        searched.causes.clear();
+        searched.series.curves.clear();
+        searched.notes.clear();
+        Ok(searched)
+    }
+
     /// The diagnosis of records that a free run can follow from end to end.
     fn in_one_go(
         &self,
@@ -188,7 +212,13 @@ impl<'a> Diagnosis<'a> {
         test: Option<&Record>,
         watch: &dyn Watch,
     ) -> Result<Looked, DiagnoseError> {
-        let Mended { records, test, mut faults, clock } = self.mended(records, test)?;
+        let Mended { records: mended, test: of_test, mut faults, clock, blind } =
+            self.mended(records, test)?;
+        if blind {
+            let searched = self.figures(records, test, watch)?;
+            return Ok(Looked { searched, faults, notes: vec![], alone: vec![] });
+        }
+        let (records, test) = (mended, of_test);
         let searched = match clock {
             None => self.search(&records, test.as_ref(), self.max_causes, watch)?,
             Some(clock) => {
@@ -242,7 +272,7 @@ impl<'a> Diagnosis<'a> {
     }
 
     /// Says at which sample a baseline leaves the finite numbers, if it does.
-    fn check_baseline(&self, record: &Record) -> Result<(), EvaluateError> {
+    pub(super) fn check_baseline(&self, record: &Record) -> Result<(), EvaluateError> {
         let run = Run::new(self.system, record)?;
         let n = run.init_samples(Init::Forgotten);
         let held = run.track(run.starts(0));

@@ -3,9 +3,11 @@
 use std::sync::Arc;
 
 use super::candidate::Candidate;
+use super::faults::{Fault, FaultKind};
 use super::library::{Allowed, library};
 use super::nominal::Nominal;
 use super::problem::{Model, Problem};
+use crate::data::Record;
 
 /// Samples at a limit, at least, to call it one.
 const COUNT: usize = 8;
@@ -39,6 +41,33 @@ fn upper(values: &[f64]) -> Option<f64> {
     let fine = count(next) == 1;
     (often >= COUNT && (fine || longest >= RUN) && often >= TIMES * count(next) && !rests)
         .then_some(largest)
+}
+
+/// Makes readings that stand at a limit of the instrument missing values, and says which.
+pub(super) fn cut_off(records: &mut [Record]) -> Vec<Fault> {
+    let (mut faults, mut before) = (vec![], 0);
+    for record in records {
+        let samples = record.len();
+        for signal in &mut record.outputs {
+            let known: Vec<bool> = signal.values.iter().map(|v| v.is_finite()).collect();
+            let (low, high) = limits(&signal.values, &known);
+            for limit in [low, high].into_iter().filter(|limit| limit.is_finite()) {
+                let at = (0..samples).filter(|&k| signal.values[k] == limit);
+                let rows: Vec<usize> = at.collect();
+                rows.iter().for_each(|&k| signal.values[k] = f64::NAN);
+                faults.push(Fault {
+                    kind: FaultKind::Clipping(limit),
+                    into: signal.name.clone(),
+                    unit: signal.unit.clone(),
+                    rows: rows.iter().map(|k| before + k).collect(),
+                    removed: 0.0,
+                    or_in: vec![],
+                });
+            }
+        }
+        before += samples;
+    }
+    faults
 }
 
 /// The limits of an output as a cause that is known before any search; `None` without any.

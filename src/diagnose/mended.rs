@@ -1,20 +1,15 @@
-//! Records whose faults were put right before a search, and what becomes of a clock that may be wrong.
+//! Data preprocessing before a search: gross errors, dead sensors, dropouts, readings that stand
+//! still, columns of the wrong sign (Ljung, System Identification, 1999, chapter 14).
 
-use super::dependence::DEPENDS;
+use super::cause::Cause;
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
-use super::faults::{Fault, flipped, retimed, strike};
-use super::finding::Track;
+use super::faults::{Fault, dead, flipped, gross_errors, retimed, strike};
+use super::limits::cut_off;
 use super::records::firsts;
-use super::searched::Searched;
+use super::stretches::horizon;
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Simulation};
-use crate::watch::Watch;
-
-/// A cause in the machine explains as much as a wrong clock if it removes so much less at most.
-const AS_MUCH: f64 = 0.02;
-/// Parameters named as wrong beside a wrong clock from which on they may be all that is wrong.
-const SEVERAL: usize = 2;
 
 /// Records without the faults that were found in them.
 #[derive(Clone)]
@@ -24,6 +19,8 @@ pub(super) struct Mended {
     pub faults: Vec<Fault>,
     /// What is wrong with their clock, if nothing in the machine is.
     pub clock: Option<Fault>,
+    /// Whether no output measures anything.
+    pub blind: bool,
 }
 
 impl Diagnosis<'_> {
@@ -33,20 +30,42 @@ impl Diagnosis<'_> {
         records: &[Record],
         test: Option<&Record>,
     ) -> Result<Mended, EvaluateError> {
-        let (mut all, mut faults) = (vec![], vec![]);
-        for (record, first) in records.iter().zip(firsts(records)) {
+        let (clean, gross): (Vec<Record>, Vec<Vec<Fault>>) = records
+            .iter()
+            .zip(firsts(records))
+            .map(|(record, first)| gross_errors(record, first))
+            .unzip();
+        let (mut clean, mut faults) = (clean, gross.concat());
+        let mut test = test.map(|record| gross_errors(record, 0).0);
+        let silent = dead(self.system, &clean)?;
+        let outputs = self.system.signals().outputs;
+        let measured = |name: &String| clean.iter().any(|r| r.signal(name).is_some());
+        let blind = !silent.is_empty()
+            && outputs
+                .iter()
+                .map(|output| &output.name)
+                .all(|name| !measured(name) || silent.iter().any(|fault| fault.into == *name));
+        if blind {
+            faults.splice(0..0, silent);
+            return Ok(Mended { records: clean, test, faults, clock: None, blind });
+        }
+        for signal in clean.iter_mut().chain(&mut test).flat_map(|r| &mut r.outputs) {
+            if silent.iter().any(|fault| fault.into == signal.name) {
+                signal.values.fill(f64::NAN);
+            }
+        }
+        faults.splice(0..0, silent);
+        let mut all = vec![];
+        for (record, first) in clean.iter().zip(firsts(records)) {
             let run = Simulation::of(self.system, record, Init::Forgotten)?;
             let (mended, found) = strike(record, &run.outputs, first);
             all.push(mended);
             faults.extend(found);
         }
-        let mut test = match test {
-            Some(record) => {
-                let run = Simulation::of(self.system, record, Init::Forgotten)?;
-                Some(strike(record, &run.outputs, 0).0)
-            }
-            None => None,
-        };
+        if let Some(record) = &test {
+            let run = Simulation::of(self.system, record, Init::Forgotten)?;
+            test = Some(strike(record, &run.outputs, 0).0);
+        }
         // most records have the sign that they should have
         let (turned, mut clock) =
             rayon::join(|| flipped(self.system, &all), || retimed(self.system, &all));
@@ -56,39 +75,29 @@ impl Diagnosis<'_> {
             faults.insert(0, fault);
             clock = retimed(self.system, &all);
         }
-        Ok(Mended { records: all, test, faults, clock: clock? })
+        Ok(Mended { records: all, test, faults, clock: clock?, blind })
     }
 
-    /// A record whose clock seems to be wrong: if one cause in the machine explains as much, the
-    /// machine is to blame and the clock is another name of that. Parameters that have to move
-    /// whatever the clock says are to blame as well. Says whether the clock is to blame.
-    pub(super) fn clocked(
+    /// Faults of the data that show before any search, and the records without them: readings
+    /// that the instrument made up are missing values, a column of the wrong sign is turned. A
+    /// wrong clock is for a search to tell from a wrong model, and not among them.
+    ///
+    /// # Errors
+    ///
+    /// If model and records do not go together, or the baseline cannot be simulated.
+    pub fn data_faults(
         &self,
         records: &[Record],
-        test: Option<&Record>,
-        fault: &Fault,
-        watch: &dyn Watch,
-    ) -> Result<(Searched, bool), DiagnoseError> {
-        let one = self.search(records, test, 1, watch)?;
-        if one.causes.len() == 1 && one.gain.error_removed >= fault.removed - AS_MUCH {
-            let searched = self.search(records, test, self.max_causes, watch)?;
-            return Ok((searched.or_else(fault.alternative()), false));
+    ) -> Result<(Vec<Record>, Vec<Cause>), DiagnoseError> {
+        for record in records {
+            self.check_baseline(record)?;
         }
-        let mended: Vec<Record> = records.iter().map(|r| fault.mend(r)).collect();
-        let mended_test = test.map(|record| fault.mend(record));
-        let searched = self.search(&mended, mended_test.as_ref(), self.max_causes, watch)?;
-        if one.track == Track::ParametersFree && !searched.causes.is_empty() {
-            let machine = self.search(records, test, self.max_causes, watch)?;
-            let nothing_left = machine.dependence < DEPENDS;
-            let parameters =
-                |of: &Searched| of.causes.iter().filter(|cause| cause.is_parameter()).count();
-            let laws = |of: &Searched| of.causes.len() - parameters(of);
-            // parameters that are wrong anyway may make up for a clock, however many it takes
-            let anyway = parameters(&searched) >= SEVERAL && laws(&machine) <= laws(&searched);
-            if nothing_left && (anyway || machine.causes.len() <= searched.causes.len() + 1) {
-                return Ok((machine.or_else(fault.alternative()), false));
-            }
+        if horizon(self.system, records)?.is_some() {
+            return Ok((records.to_vec(), vec![]));
         }
-        Ok((searched, true))
+        let Mended { mut records, faults, .. } = self.mended(records, None)?;
+        let mut causes: Vec<Cause> = faults.iter().map(Fault::cause).collect();
+        causes.extend(cut_off(&mut records).iter().map(Fault::cause));
+        Ok((records, causes))
     }
 }

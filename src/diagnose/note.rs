@@ -12,6 +12,18 @@ pub enum Note {
         /// Stretches used.
         count: usize,
     },
+    /// What the simulation leaves of an output is no more than its own error, of the integrator and
+    /// of rounding.
+    Unresolved {
+        /// The output.
+        output: String,
+        /// What is left, rms.
+        left: f64,
+        /// The simulation's own error, rms.
+        error: f64,
+        /// Unit of both.
+        unit: String,
+    },
     /// Inputs that do not move: nothing that depends on them can show.
     NoExcitation {
         /// The inputs.

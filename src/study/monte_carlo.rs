@@ -10,6 +10,9 @@ use crate::encoder::EncoderInitialiser;
 use crate::system::System;
 use crate::train::{Fingerprint, Recipe};
 
+/// Trainings of a study at most.
+const MOST_JOBS: u64 = 1_000_000;
+
 /// A Monte Carlo study (Hoekstra et al., Sec. 4.4): what a configuration file holds. Paths
 /// are seen from that file.
 ///
@@ -80,8 +83,10 @@ impl MonteCarlo {
     ///
     /// The first setting that cannot be right.
     pub fn check(&self) -> Result<(), StudyError> {
-        if self.seeds == 0 {
-            return Err(StudyError::setting("seeds", 0, "at least 1"));
+        let most = MOST_JOBS / (self.starts.len() as u64).max(1);
+        if !(1..=most).contains(&self.seeds) {
+            let expected = format!("from 1 to {most}");
+            return Err(StudyError::setting("seeds", self.seeds, &expected));
         }
         for (key, empty) in [
             ("data", self.data.is_empty()),

@@ -17,11 +17,12 @@ use super::remark::Remark;
 use super::table::{CellFault, CellProblem, Table};
 use super::text;
 use crate::fault::Place;
+use crate::file::regular;
 use begin::begin;
 use date::Instant;
 use fields::{is_comment, lines, quoted};
 use header::names;
-use std::io::{self, Read};
+use std::io;
 
 pub(super) fn unreadable(source: &str, error: io::Error) -> DataError {
     DataError::Open { at: place(source, None, None), source: error }
@@ -32,11 +33,8 @@ pub(super) fn unpack(bytes: Vec<u8>, source: &str) -> Result<Vec<u8>, DataError>
     if !bytes.starts_with(&[0x1F, 0x8B]) {
         return Ok(bytes);
     }
-    let mut unpacked = Vec::with_capacity(4 * bytes.len());
-    match flate2::read::MultiGzDecoder::new(&bytes[..]).read_to_end(&mut unpacked) {
-        Ok(_) => Ok(unpacked),
-        Err(error) => Err(DataError::Unpack { at: place(source, None, None), source: error }),
-    }
+    let unpacked = regular::unpack(&bytes);
+    unpacked.map_err(|error| DataError::Unpack { at: place(source, None, None), source: error })
 }
 
 /// Reads the text of a file.

@@ -58,7 +58,12 @@ impl Explain for DataError {
             Self::Open { source, .. } if source.kind() == io::ErrorKind::NotFound => {
                 "check the path; it is relative to the folder you work in".into()
             }
-            Self::Open { .. } => "check that the path is a file that you may read".into(),
+            Self::Open { .. } => {
+                "check that the path is a file that you may read; `--data -` reads from a pipe".into()
+            }
+            Self::Unpack { source, .. } if source.kind() == io::ErrorKind::FileTooLarge => {
+                "unpack it and look what is in it: numbers do not pack as well as that".into()
+            }
             Self::Unpack { .. } => "pack the file again, or hand it in unpacked".into(),
             Self::Write { source, .. } => crate::file::write_hint(source).into(),
             Self::Empty { .. } => "the first line names the columns, such as `time,u [N],y [m]`".into(),

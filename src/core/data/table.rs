@@ -5,6 +5,7 @@ use super::error::DataError;
 use super::kind;
 use super::remark::Remark;
 use crate::fault::Place;
+use crate::file::regular;
 use std::io::Read;
 use std::path::Path;
 
@@ -91,7 +92,7 @@ impl Table {
     pub fn open_all(path: impl AsRef<Path>) -> Result<Vec<Self>, DataError> {
         let path = path.as_ref();
         let source = path.display().to_string();
-        match std::fs::File::open(path) {
+        match regular::open(path) {
             Ok(file) => Self::read_all(file, &source),
             Err(error) => Err(csv::unreadable(&source, error)),
         }
@@ -111,10 +112,9 @@ impl Table {
     /// # Errors
     ///
     /// As [`Table::open`].
-    pub fn read_all(mut from: impl Read, source: &str) -> Result<Vec<Self>, DataError> {
-        let mut bytes = Vec::new();
-        match from.read_to_end(&mut bytes) {
-            Ok(_) => kind::tables(&csv::unpack(bytes, source)?, source),
+    pub fn read_all(from: impl Read, source: &str) -> Result<Vec<Self>, DataError> {
+        match regular::read_record(from) {
+            Ok(bytes) => kind::tables(&csv::unpack(bytes, source)?, source),
             Err(error) => Err(csv::unreadable(source, error)),
         }
     }

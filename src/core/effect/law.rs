@@ -8,7 +8,7 @@ use serde::de::DeserializeOwned;
 use super::card::{EffectCard, Named};
 use super::search::Search;
 use super::view::View;
-use crate::model::{Dual32, Dual64};
+use crate::model::{Dual32, Dual64, Fault};
 use crate::per_lanes;
 use crate::real::{F32x16, F64x8, Real, Trace};
 
@@ -112,6 +112,12 @@ pub trait Effect:
         None
     }
 
+    /// What is wrong with its values beyond the ranges of its knobs, if anything is: lists of
+    /// different lengths, bounds in the wrong order. Keys are those of the effect's own table.
+    fn fault(&self) -> Option<Fault> {
+        None
+    }
+
     /// w, and the rates of change of the own states.
     fn law<R: Real>(&self, at: &Felt<R>, rates: &mut [R]) -> R;
 
@@ -166,6 +172,10 @@ pub trait Shape: Debug + Send + Sync {
         let _ = named;
         None
     }
+    /// What is wrong with its values, see [`Effect::fault`].
+    fn fault(&self) -> Option<Fault> {
+        None
+    }
     /// Where a search starts.
     fn search(&self, view: &View) -> Search;
     /// Answers one block.
@@ -201,6 +211,10 @@ impl<E: Effect + CandidateEffect> Shape for E {
 
     fn senses(&self, named: &Named) -> Option<[&'static str; 2]> {
         Effect::senses(self, named)
+    }
+
+    fn fault(&self) -> Option<Fault> {
+        Effect::fault(self)
     }
 
     fn search(&self, view: &View) -> Search {

@@ -21,6 +21,8 @@ const TRIED: [f64; 17] = [
     0.0, 0.01, -0.01, 0.1, -0.1, 0.5, -0.5, 1.0, -1.0, 3.0, -3.0, 10.0, -10.0, 100.0, -100.0, 1e3,
     -1e3,
 ];
+/// Sizes of pairs of coefficients that are tried, and the second one's sign.
+const SCALES: [(f64, f64); 3] = [(1.0, -1.0), (1e-3, 1.0), (1e4, -1.0)];
 /// Relative difference that rounding may make.
 const ROUNDING: f64 = 1e-9;
 
@@ -157,7 +159,7 @@ impl WrittenEffect {
             let problem = DefinitionProblem::Starts { count: starts.len(), most: STARTS };
             return Err(DefinitionError::new("parameters", problem));
         }
-        let mut numbers = false;
+        let (mut numbers, several) = (false, coefficients.len() > 1);
         for start in starts {
             let with = |size: &dyn Fn(usize) -> f64| {
                 let mut knobs = start.clone();
@@ -168,16 +170,15 @@ impl WrittenEffect {
             if let Some(at) = none.iter().position(|w| *w != 0.0 && w.is_finite()) {
                 return wrong(DefinitionProblem::NotNeutral { z: TRIED[at], w: none[at] });
             }
-            // two sizes that have no simple ratio, and their sum
-            let one = |i: usize| 0.7 + 0.31 * i as f64;
-            let other = |i: usize| 1.9 - 0.23 * i as f64;
-            let (a, b, both) = (with(&one), with(&other), with(&|i| one(i) + other(i)));
-            for i in 0..TRIED.len() {
-                let (sum, size) = (a[i] + b[i], a[i].abs() + b[i].abs());
-                if size.is_finite() && both[i].is_finite() {
-                    numbers = true;
-                    if (sum - both[i]).abs() > ROUNDING * size.max(both[i].abs()) {
-                        let several = coefficients.len() > 1;
+            for (scale, sign) in SCALES {
+                let one = |i: usize| scale * (0.7 + 0.31 * i as f64);
+                let other = |i: usize| sign * scale * (1.9 - 0.23 * i as f64);
+                let (a, b, both) = (with(&one), with(&other), with(&|i| one(i) + other(i)));
+                for i in 0..TRIED.len() {
+                    let (sum, size) = (a[i] + b[i], a[i].abs() + b[i].abs());
+                    let known = size.is_finite() && both[i].is_finite();
+                    numbers |= known;
+                    if known && (sum - both[i]).abs() > ROUNDING * size.max(both[i].abs()) {
                         return wrong(DefinitionProblem::NotProportional { several });
                     }
                 }

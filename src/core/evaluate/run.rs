@@ -5,6 +5,7 @@ use super::simulate::Init;
 use crate::data::Record;
 use crate::model::Signals;
 use crate::optimise::{Levenberg, Settings, Unknown};
+use crate::statistics::gross;
 use crate::system::{Drive, Lane, Plan, System, Track};
 
 /// Share of a start's influence at which it counts as forgotten.
@@ -56,6 +57,8 @@ pub struct Run<'a> {
     pub plan: Plan,
     pub drive: Drive,
     pub measured: Vec<Option<Vec<f64>>>,
+    /// Rows of gross errors in what was measured, which no start is fitted to.
+    gross: Vec<Vec<usize>>,
 }
 
 impl<'a> Run<'a> {
@@ -80,9 +83,11 @@ impl<'a> Run<'a> {
             });
         }
         let plan = system.plan(system.sampling_time(Some(step))?)?;
+        let measured = measured(&plan.signals, record);
         Ok(Self {
             drive: drive(&plan.signals, record)?,
-            measured: measured(&plan.signals, record),
+            gross: measured.iter().map(|y| y.as_deref().map_or(vec![], gross)).collect(),
+            measured,
             plan,
             system,
         })
@@ -235,12 +240,12 @@ impl<'a> Run<'a> {
 
     fn residuals(&self, track: &Track, range: std::ops::Range<usize>) -> Vec<f64> {
         let mut r = vec![];
-        for (y, simulated) in self.measured.iter().zip(&track.y) {
+        for ((y, gross), simulated) in self.measured.iter().zip(&self.gross).zip(&track.y) {
             let Some(y) = y else { continue };
-            let known: Vec<f64> =
-                range.clone().filter(|&k| y[k].is_finite()).map(|k| y[k] - simulated[k]).collect();
+            let told = |k: &usize| y[*k].is_finite() && gross.binary_search(k).is_err();
+            let known: Vec<f64> = range.clone().filter(told).map(|k| y[k] - simulated[k]).collect();
             // outputs of different unit count by their own spread
-            let values: Vec<f64> = range.clone().map(|k| y[k]).filter(|v| v.is_finite()).collect();
+            let values: Vec<f64> = range.clone().filter(told).map(|k| y[k]).collect();
             let centre = values.iter().sum::<f64>() / values.len().max(1) as f64;
             let spread = (values.iter().map(|v| (v - centre).powi(2)).sum::<f64>()
                 / values.len().max(1) as f64)

@@ -42,7 +42,10 @@ pub fn system(document: &Document) -> Result<System, FileError> {
     let sampling = Sampling { sampling_time, integrator, hold };
     let system = System { sampling, model, written, effects };
     faults(document, system.model.as_ref())?;
-    match system.plan(sampling_time.unwrap_or(1.0)) {
+    let signals = system.signals();
+    let mut placed = system.effects.iter().enumerate();
+    let sound = placed.try_for_each(|(index, placed)| placed.check_file(index, &signals));
+    match sound.and_then(|()| system.plan(sampling_time.unwrap_or(1.0))) {
         Ok(_) => Ok(system),
         Err(error) => {
             let key = key(&error, &system.effects);

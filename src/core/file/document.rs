@@ -8,6 +8,7 @@ use serde::Deserialize;
 use super::complaint::Complaint;
 use super::error::FileError;
 use super::node::{Node, Syntax, Value};
+use super::regular::read_regular;
 use super::source::{Source, Spot};
 use super::{json, read, toml};
 
@@ -73,7 +74,7 @@ impl Document {
     /// As [`parse`](Self::parse), and if the file cannot be read or is no UTF-8 text.
     pub fn load(path: &Path) -> Result<Self, FileError> {
         let name = path.display().to_string();
-        let bytes = std::fs::read(path)
+        let bytes = read_regular(path)
             .map_err(|source| FileError::Open { at: Box::new(Spot::file(&name)), source })?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let end = error.utf8_error().valid_up_to();

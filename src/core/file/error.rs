@@ -204,7 +204,7 @@ impl Explain for FileError {
         let text = match self {
             Self::Open { source, .. } => match source.kind() {
                 io::ErrorKind::NotFound => "check the path",
-                _ => return None,
+                _ => "name a file that you may read",
             },
             Self::Write { source, .. } => write_hint(source),
             Self::NotUtf8 { .. } => "save the file as UTF-8",

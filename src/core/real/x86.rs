@@ -55,6 +55,7 @@ macro_rules! registers {
             }
             #[inline(always)]
             fn splat(value: f64) -> Self {
+                // SAFETY: only code for processors with these features uses the type.
                 Self([unsafe { $set(value as $t) }; $count])
             }
             /// `other` where `other` is below `self` or not a number, else `self`.
@@ -64,6 +65,7 @@ macro_rules! registers {
                 for k in 0..$count {
                     let ($a, $b) = (other.0[k], self.0[k]);
                     let ($y, $n) = (other.0[k], self.0[k]);
+                    // SAFETY: only code for processors with these features uses the type.
                     out.0[k] = unsafe {
                         let $m = $less;
                         let first = $pick;
@@ -79,6 +81,7 @@ macro_rules! registers {
             fn above_zero(self, yes: Self, no: Self) -> Self {
                 let mut out = self;
                 for k in 0..$count {
+                    // SAFETY: only code for processors with these features uses the type.
                     out.0[k] = unsafe {
                         let ($a, $b) = ($set(0.0), self.0[k]);
                         let $m = $less;
@@ -99,6 +102,7 @@ macro_rules! registers {
             #[inline(always)]
             fn div(mut self, other: Self) -> Self {
                 for k in 0..$count {
+                    // SAFETY: only code for processors with these features uses the type.
                     self.0[k] = unsafe { $div(self.0[k], other.0[k]) };
                 }
                 self
@@ -117,6 +121,7 @@ macro_rules! registers {
             fn neg(mut self) -> Self {
                 for k in 0..$count {
                     let $v = self.0[k];
+                    // SAFETY: only code for processors with these features uses the type.
                     self.0[k] = unsafe { $flip };
                 }
                 self
@@ -155,6 +160,7 @@ macro_rules! registers {
             #[inline(always)]
             fn sqrt(mut self) -> Self {
                 for k in 0..$count {
+                    // SAFETY: only code for processors with these features uses the type.
                     self.0[k] = unsafe { $sqrt(self.0[k]) };
                 }
                 self
@@ -163,6 +169,7 @@ macro_rules! registers {
             fn abs(mut self) -> Self {
                 for k in 0..$count {
                     let $v = self.0[k];
+                    // SAFETY: only code for processors with these features uses the type.
                     self.0[k] = unsafe { $abs };
                 }
                 self
@@ -193,6 +200,7 @@ macro_rules! registers {
             #[inline(always)]
             fn $method(mut self, other: Self) -> Self {
                 for k in 0..$count {
+                    // SAFETY: only code for processors with these features uses the type.
                     self.0[k] = unsafe { $op(self.0[k], other.0[k]) };
                 }
                 self
@@ -217,6 +225,7 @@ macro_rules! registers {
             #[inline(always)]
             fn $method(mut self, b: Self, c: Self) -> Self {
                 for k in 0..$count {
+                    // SAFETY: only code for processors with these features uses the type.
                     self.0[k] = unsafe { $fused(self.0[k], b.0[k], c.0[k]) };
                 }
                 self

@@ -3,6 +3,7 @@
 mod averaged;
 mod basis;
 mod blocks;
+mod coloured;
 mod gross;
 mod lines;
 mod plans;

@@ -2,6 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::coloured::Autoregression;
 use super::{block_sums, blocks, dot};
 
 /// Covariance of the unknowns of a fit with residuals `r` and their derivatives `columns`
@@ -10,7 +11,8 @@ use super::{block_sums, blocks, dot};
 /// The curvature of the cost stands on both sides of the variance of its gradient, added up
 /// in blocks as long as the residuals remember (a sandwich: Huber, 1967; White, Econometrica
 /// 48, 1980). `ridge` is what priors add to the curvature. Never smaller than what white
-/// residuals of the same size would give.
+/// residuals of the same size would give, nor than what an autoregressive model of them gives:
+/// few blocks know little of what lasts long.
 pub fn covariance(
     columns: &[Vec<f64>],
     r: &[f64],
@@ -54,8 +56,18 @@ pub fn covariance(
         middle[(i, i)] += ridge * variance;
     }
     let robust = &inverse * middle * &inverse;
+    let by_colour = Autoregression::of(r, n).map(|model| {
+        let mut middle = model.of_gradient(columns);
+        for (i, ridge) in ridge.iter().enumerate() {
+            middle[(i, i)] += ridge * variance;
+        }
+        &inverse * middle * &inverse
+    });
     let plain = inverse * variance;
-    let grown = |i: usize| (plain[(i, i)] / robust[(i, i)].max(1e-300)).max(1.0).sqrt();
+    let grown = |i: usize| {
+        let coloured = by_colour.as_ref().map_or(0.0, |c| c[(i, i)]);
+        (plain[(i, i)].max(coloured) / robust[(i, i)].max(1e-300)).max(1.0).sqrt()
+    };
     Some(DMatrix::from_fn(n, n, |i, j| robust[(i, j)] * grown(i) * grown(j)))
 }
 

@@ -91,6 +91,30 @@ pub enum SystemError {
         /// Largest value allowed.
         max: f64,
     },
+    /// A value of an effect that makes no sense beside its others.
+    #[error("effect {index} ({effect}): `{key}` is {found}, expected {expected}")]
+    Value {
+        /// Position in the list of effects, from 0.
+        index: usize,
+        /// Name of the effect.
+        effect: String,
+        /// Key in the effect's table.
+        key: String,
+        /// What stands there.
+        found: String,
+        /// What should stand there.
+        expected: String,
+    },
+    /// A place that an effect names twice.
+    #[error("effect {index} names `{name}` twice in `{key}`")]
+    PlaceTwice {
+        /// Position in the list of effects, from 0.
+        index: usize,
+        /// `also_of` or `also_into`.
+        key: &'static str,
+        /// The place.
+        name: String,
+    },
     /// Two names collide.
     #[error("`{name}` names both {first} and {second}")]
     NameTwice {
@@ -128,6 +152,10 @@ impl Explain for SystemError {
             Self::KnobRange { index, effect, knob, .. } => {
                 format!("effects[{index}].effect.{effect}.{knob}")
             }
+            Self::Value { index, effect, key, .. } => {
+                format!("effects[{index}].effect.{effect}.{key}")
+            }
+            Self::PlaceTwice { index, key, .. } => format!("effects[{index}].{key}"),
             Self::NameTwice { name, .. } => name.clone(),
             Self::SamplingTime(_) | Self::NoSamplingTime => "sampling_time".into(),
             Self::Substeps(_) => "integrator.substeps".into(),
@@ -157,6 +185,8 @@ impl Explain for SystemError {
                 _ => "name the first of them in `of`, the others in `also_of`, in this order".into(),
             },
             Self::KnobRange { min, max, .. } => format!("use a value from {min} to {max}"),
+            Self::Value { expected, .. } => format!("write {expected}"),
+            Self::PlaceTwice { .. } => "name each place once".into(),
             Self::NameTwice { .. } => "give one of the two another name".into(),
             Self::SamplingTime(_) | Self::NoSamplingTime => {
                 "state the record's step in s as `sampling_time` in the model file, or add a `time` column to the record"

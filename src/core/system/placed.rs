@@ -2,7 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::effect::CandidateEffect;
+use super::error::SystemError;
+use crate::effect::{CandidateEffect, EffectCard, Mechanism};
+use crate::model::{Fault, Signals};
 
 /// A further channel that one cause enters.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -65,6 +67,62 @@ impl Placed {
             also_of: vec![],
             effect,
         }
+    }
+
+    /// Checks its values and places, as far as they do not depend on the model.
+    pub(super) fn check(&self, index: usize, card: &EffectCard) -> Result<(), SystemError> {
+        let effect = || self.effect.typetag_name().to_string();
+        for knob in &card.knobs {
+            // absent bounds are infinite and have no range
+            let ok = knob.value >= knob.min && knob.value <= knob.max || knob.value.is_infinite();
+            if !ok {
+                return Err(SystemError::KnobRange {
+                    index,
+                    effect: effect(),
+                    knob: knob.name.to_string(),
+                    value: knob.value,
+                    min: knob.min,
+                    max: knob.max,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks what a file may get wrong and a search cannot: values that make no sense beside each
+    /// other, a parameter's value outside its bounds, places named twice.
+    pub(crate) fn check_file(&self, index: usize, signals: &Signals) -> Result<(), SystemError> {
+        let effect = || self.effect.typetag_name().to_string();
+        let card = self.effect.card();
+        let parameter = signals.parameters.iter().find(|p| p.name == self.into);
+        if let (Mechanism::Parameter, Some(p), Some(knob)) =
+            (card.mechanism, parameter, card.knobs.first())
+            && !(p.min..=p.max).contains(&knob.value)
+        {
+            return Err(SystemError::KnobRange {
+                index,
+                effect: effect(),
+                knob: knob.name.to_string(),
+                value: knob.value,
+                min: p.min,
+                max: p.max,
+            });
+        }
+        if let Some(Fault { key, found, expected }) = self.effect.fault() {
+            return Err(SystemError::Value { index, effect: effect(), key, found, expected });
+        }
+        let also_into: Vec<&str> = self.also_into.iter().map(AlsoInto::channel).collect();
+        let also_of: Vec<&str> = self.also_of.iter().map(String::as_str).collect();
+        for (key, first, also) in [
+            ("also_into", Some(self.into.as_str()), also_into),
+            ("also_of", self.of.as_deref(), also_of),
+        ] {
+            let all: Vec<&str> = first.into_iter().chain(also).collect();
+            if let Some(k) = (1..all.len()).find(|&k| all[..k].contains(&all[k])) {
+                return Err(SystemError::PlaceTwice { index, key, name: all[k].into() });
+            }
+        }
+        Ok(())
     }
 
     /// Whether the effect acts on the signal it depends on (an actuator's or sensor's curve).

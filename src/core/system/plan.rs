@@ -145,21 +145,7 @@ impl Plan {
         if card.mechanism == Mechanism::Data {
             return Ok(());
         }
-        let name = placed.effect.typetag_name();
-        for knob in &card.knobs {
-            // absent bounds are infinite and have no range
-            let ok = knob.value >= knob.min && knob.value <= knob.max || knob.value.is_infinite();
-            if !ok {
-                return Err(SystemError::KnobRange {
-                    index,
-                    effect: name.into(),
-                    knob: knob.name.to_string(),
-                    value: knob.value,
-                    min: knob.min,
-                    max: knob.max,
-                });
-            }
-        }
+        placed.check(index, &card)?;
         let way = self.way(index, placed, &card)?;
         let slot = Slot {
             effect: placed.effect.clone(),

@@ -2,6 +2,7 @@
 //! so that what is left can be asked for the model's own errors.
 
 mod column;
+mod dead;
 mod rows;
 
 use std::collections::BTreeMap;
@@ -13,7 +14,8 @@ use super::naming::title_of;
 use crate::data::Record;
 
 pub(crate) use column::{flipped, retimed};
-pub(crate) use rows::strike;
+pub(crate) use dead::dead;
+pub(crate) use rows::{gross_errors, strike};
 
 /// Share of the noise that rounding makes, to be worth a word.
 const COARSE: f64 = 0.5;
@@ -41,6 +43,12 @@ pub(crate) enum FaultKind {
     Dropout(f64),
     /// The reading stood still.
     Stuck(f64),
+    /// It stood still throughout.
+    Dead(f64),
+    /// Readings that lie farther from all others than those from each other; the first one.
+    Gross(f64),
+    /// Readings cut off at a limit.
+    Clipping(f64),
     /// Coarse steps of the converter, and their rounding error over the noise.
     Quantisation { step: f64, over_noise: f64 },
     /// The column has the wrong sign.
@@ -55,7 +63,9 @@ impl FaultKind {
     fn effect(self) -> &'static str {
         match self {
             Self::Dropout(_) => "dropout",
-            Self::Stuck(_) => "stuck",
+            Self::Stuck(_) | Self::Dead(_) => "stuck",
+            Self::Gross(_) => "outliers",
+            Self::Clipping(_) => "clipping",
             Self::Quantisation { .. } => "quantisation",
             Self::SwappedSign => "swapped_sign",
             Self::TimeShift(_) => "time_shift",
@@ -73,6 +83,9 @@ impl Fault {
                 (ColumnFault::Dropout(value), Some((value, unit.as_str())))
             }
             FaultKind::Stuck(value) => (ColumnFault::Stuck(value), Some((value, unit.as_str()))),
+            FaultKind::Dead(value) => (ColumnFault::Dead(value), Some((value, unit.as_str()))),
+            FaultKind::Gross(value) => (ColumnFault::Gross(value), Some((value, unit.as_str()))),
+            FaultKind::Clipping(limit) => (ColumnFault::Clipping, Some((limit, unit.as_str()))),
             FaultKind::Quantisation { step, over_noise } => {
                 (ColumnFault::Quantisation(step, over_noise), Some((step, unit.as_str())))
             }

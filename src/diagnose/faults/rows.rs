@@ -2,7 +2,7 @@
 
 use super::{Fault, FaultKind};
 use crate::data::Record;
-use crate::statistics::{deviation, median};
+use crate::statistics::{deviation, gross, median};
 
 /// Jumps beyond this many robust standard deviations of a usual step are falls.
 const BEYOND: f64 = 6.0;
@@ -130,6 +130,26 @@ fn still(y: &[f64], simulated: &[f64]) -> Vec<(f64, Vec<usize>)> {
         .collect();
     let count: usize = found.iter().map(|(_, rows)| rows.len()).sum();
     if count as f64 > NATURE * y.len() as f64 { vec![] } else { found }
+}
+
+/// Strikes out gross errors: readings that lie farther from all others than those from each
+/// other become missing values.
+pub(crate) fn gross_errors(record: &Record, before: usize) -> (Record, Vec<Fault>) {
+    let (mut mended, mut faults) = (record.clone(), vec![]);
+    for signal in &mut mended.outputs {
+        let rows = gross(&signal.values);
+        let Some(&first) = rows.first() else { continue };
+        faults.push(Fault {
+            kind: FaultKind::Gross(signal.values[first]),
+            into: signal.name.clone(),
+            unit: signal.unit.clone(),
+            rows: rows.iter().map(|k| before + k).collect(),
+            removed: 0.0,
+            or_in: vec![],
+        });
+        rows.iter().for_each(|&k| signal.values[k] = f64::NAN);
+    }
+    (mended, faults)
 }
 
 /// Strikes out what the instruments made up: these samples become missing values. `simulated`

@@ -54,17 +54,17 @@ impl Window {
 
     /// Samples of each output.
     pub fn outputs(&self) -> usize {
-        self.n_a + usize::from(self.current_sample)
+        self.n_a.saturating_add(usize::from(self.current_sample))
     }
 
     /// Samples of each input.
     pub fn inputs(&self) -> usize {
-        self.n_b + usize::from(self.current_sample)
+        self.n_b.saturating_add(usize::from(self.current_sample))
     }
 
     /// Length of the vector for so many outputs and inputs.
     pub fn rows(&self, n_y: usize, n_u: usize) -> usize {
-        self.outputs() * n_y + self.inputs() * n_u
+        self.outputs().saturating_mul(n_y).saturating_add(self.inputs().saturating_mul(n_u))
     }
 
     /// Samples that have to come before sample k.

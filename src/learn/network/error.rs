@@ -11,6 +11,14 @@ pub enum NetworkError {
         /// Position of the layer: 0 is the input, then the hidden layers, then the output.
         layer: usize,
     },
+    /// More weights than are held.
+    #[error("the network has {} weights; at most {most} are held", .count.map_or_else(|| "more than countable".into(), |count| count.to_string()))]
+    TooLarge {
+        /// How many, if that can be counted.
+        count: Option<usize>,
+        /// How many there may be.
+        most: usize,
+    },
     /// A vector of weights of another length.
     #[error("the network has {expected} weights, {found} were given")]
     Weights {
@@ -54,6 +62,7 @@ impl Explain for NetworkError {
                 "give every layer at least one unit; an empty list of hidden layers makes a linear map"
                     .into()
             }
+            Self::TooLarge { .. } => "give `hidden` fewer units, and `n_a` and `n_b` fewer samples".into(),
             Self::Weights { .. } => "ask `Layout::len` how many weights a network has".into(),
             Self::NotFinite { .. } => "start again from the last finite weights".into(),
             Self::Samples { .. } => "lay the samples out row by row: all samples of one signal side by side".into(),

@@ -79,7 +79,7 @@ fn strip<P: Pack, const K: usize, const MODE: u8>(
     for i in 0..4 {
         for k in 0..K {
             sum[i][k] = match MODE {
-                // SAFETY, here and below: at + K N <= BLOCK, the length of a row
+                // SAFETY: here and below, at + K N <= BLOCK, the length of a row
                 mode::ADD if i < out.len() => unsafe { P::load(out[i].ptr().add(at + k * P::N)) },
                 mode::SET => P::splat(bias[i]),
                 _ => P::constant(0.0),
@@ -102,11 +102,13 @@ fn strip<P: Pack, const K: usize, const MODE: u8>(
             let lane = at + k * P::N;
             let result = match MODE {
                 mode::SLOPE => {
+                    // SAFETY: at + N <= BLOCK, the length of a row.
                     let h = unsafe { P::load(h[i].ptr().add(lane)) };
                     sum.mul(h.fnma(h, P::constant(1.0)))
                 }
                 _ => sum,
             };
+            // SAFETY: at + N <= BLOCK, the length of a row.
             unsafe { result.store(out.mut_ptr().add(lane)) };
         }
     }
@@ -224,10 +226,11 @@ fn tile<P: Pack, const J: usize>(
         while at < P::Number::BLOCK {
             let mut value = [P::constant(0.0); J];
             for i in 0..J {
-                // SAFETY, here and below: at + N <= BLOCK, the length of a row
+                // SAFETY: here and below, at + N <= BLOCK, the length of a row
                 value[i] = unsafe { P::load(from[i].ptr().add(at)) };
             }
             for q in 0..4 {
+                // SAFETY: at + N <= BLOCK, the length of a row.
                 let slope = unsafe { P::load(d[q].ptr().add(at)) };
                 for i in 0..J {
                     sum[q][i] = slope.fma(value[i], sum[q][i]);

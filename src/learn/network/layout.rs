@@ -6,6 +6,9 @@ use serde::{Deserialize, Serialize};
 
 use super::NetworkError;
 
+/// Weights of a network at most: 800 MB of them, and as much for each of their moments.
+const MOST: usize = 100_000_000;
+
 /// Sizes of the layers of a [`ResNet`](super::ResNet), and the order of its weights.
 ///
 /// The flat vector holds, for each hidden layer, W (one row per unit, row after row) and b;
@@ -46,13 +49,29 @@ impl Layout {
     ///
     /// # Errors
     ///
-    /// [`NetworkError::EmptyLayer`] if any size is 0.
+    /// [`NetworkError::EmptyLayer`] if any size is 0, [`NetworkError::TooLarge`] if there would be
+    /// more weights than are held.
     pub fn new(inputs: usize, hidden: &[usize], outputs: usize) -> Result<Self, NetworkError> {
         let sizes = [inputs].into_iter().chain(hidden.iter().copied()).chain([outputs]);
         if let Some((layer, _)) = sizes.enumerate().find(|(_, size)| *size == 0) {
             return Err(NetworkError::EmptyLayer { layer });
         }
-        Ok(Self { inputs, hidden: hidden.to_vec(), outputs })
+        let layout = Self { inputs, hidden: hidden.to_vec(), outputs };
+        match layout.count() {
+            Some(count) if count <= MOST => Ok(layout),
+            count => Err(NetworkError::TooLarge { count, most: MOST }),
+        }
+    }
+
+    /// Number of weights, if it is a number that this machine has.
+    fn count(&self) -> Option<usize> {
+        let mut inputs = self.inputs;
+        let mut count = self.inputs.checked_mul(self.outputs)?;
+        for &outputs in self.hidden.iter().chain([&self.outputs]) {
+            let own = inputs.checked_add(1)?.checked_mul(outputs)?;
+            (count, inputs) = (count.checked_add(own)?, outputs);
+        }
+        Some(count)
     }
 
     /// How many numbers go in.

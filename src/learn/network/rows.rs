@@ -24,11 +24,12 @@ fn tanh_together<P: Pack, const K: usize>(row: &mut Row<P::Number>) {
     while at + K * P::N <= P::Number::BLOCK {
         let mut x = [P::constant(0.0); K];
         for (i, x) in x.iter_mut().enumerate() {
-            // SAFETY, here and below: at + K N <= BLOCK, the length of a row
+            // SAFETY: here and below, at + K N <= BLOCK, the length of a row
             *x = unsafe { P::load(row.ptr().add(at + i * P::N)) };
         }
         P::tanh(&mut x);
         for (i, x) in x.into_iter().enumerate() {
+            // SAFETY: at + K N <= BLOCK, the length of a row.
             unsafe { x.store(row.mut_ptr().add(at + i * P::N)) };
         }
         at += K * P::N;

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::TrainError;
 use super::fit::Epoch;
-use crate::file::write_text;
+use crate::file::{read_regular, write_text};
 use crate::optimise::AdamState;
 
 /// Where and how often progress is written down.
@@ -53,12 +53,13 @@ impl State {
     /// Reads a checkpoint, if there is one.
     pub fn read(path: &Path, fingerprint: u64) -> Result<Option<Self>, TrainError> {
         let fault = |reason: String| TrainError::File { path: path.display().to_string(), reason };
-        let text = match fs::read_to_string(path) {
+        let text = match read_regular(path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(fault(error.to_string())),
         };
-        let state: Self = serde_json::from_str(&text).map_err(|error| fault(error.to_string()))?;
+        let state: Self =
+            serde_json::from_slice(&text).map_err(|error| fault(error.to_string()))?;
         if state.fingerprint != fingerprint {
             let (path, what) = (path.display().to_string(), "settings, model or records");
             return Err(TrainError::OtherRun { path, what });

@@ -75,6 +75,11 @@ impl Recipe {
             let reach = self.encoder.window().reach();
             return Err(TrainError::TooShort { which: "training", length: 1, reach });
         };
+        // before anything as long as a window is made
+        let reach = self.encoder.window().reach();
+        if reach >= record.len() {
+            return Err(TrainError::TooShort { which: "training", length: 1, reach });
+        }
         let known = Known::new(system, record)?.augmented(augmented_states);
         let mut encoder = self.encoder.clone();
         let started = self.initialiser.initialise(encoder.as_mut(), &known, seed)?;

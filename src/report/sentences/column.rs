@@ -32,6 +32,24 @@ pub fn sentence(cause: &Cause, fault: ColumnFault) -> String {
              left out.",
             with_unit(value, unit)
         ),
+        ColumnFault::Dead(value) => format!(
+            "{into} is dead: every reading is {}, while the model says that the machine moves.",
+            with_unit(value, unit)
+        ),
+        ColumnFault::Gross(value) => {
+            let row = cause.rows.as_ref().and_then(|rows| rows.first()).copied().unwrap_or(0);
+            let value = with_unit(value, unit);
+            match count {
+                1 => format!(
+                    "One reading of {into}, {value} at sample {row}, lies far beyond all others and was \
+                     left out."
+                ),
+                _ => format!(
+                    "{count} readings of {into} lie far beyond all others, the first {value} at sample \
+                     {row}, and were left out."
+                ),
+            }
+        }
         ColumnFault::Quantisation(step, over_noise) => format!(
             "Coarse quantisation of {into}: steps of {}, whose rounding error ({} rms) is {} times the \
              noise.",

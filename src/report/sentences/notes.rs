@@ -30,6 +30,13 @@ pub fn note(note: &Note) -> String {
              were not checked.",
             number(*seconds, None)
         ),
+        Note::Unresolved { output, left, error, unit } => format!(
+            "What the simulation leaves of {output} ({} rms) is no more than its own error, of the \
+             integrator and of rounding ({}): the record tells nothing beyond. With more substeps it \
+             might.",
+            short(*left, unit),
+            short(*error, unit)
+        ),
         Note::NoExcitation { inputs, all: true } => format!(
             "Nothing is asked of the machine in this record: {} {} constant. What does not move cannot \
              show what is wrong with it; record again with inputs that move.",

@@ -180,15 +180,18 @@ per_lanes! {
         let [constants, _, theta, derived] = lists.map(Part::read);
         let moving = [trial, Part::read(u), Part::read(&[]), Part::of(registers), k];
         let program = resolved(laws, [constants, theta, derived], moving);
-        // SAFETY, here and below: four parts of `scratch`, used by nothing else while the
+        // SAFETY: here and below, four parts of `scratch`, used by nothing else while the
         // program does not run
         unsafe { now.values() }.copy_from_slice(&x[..size]);
         let mut slot = 0;
         for _ in 0..steps.substeps {
+            // SAFETY: a part of `scratch` that nothing else uses meanwhile.
             unsafe { trial.values() }.copy_from_slice(unsafe { now.values() });
+            // SAFETY: a part of `scratch` that nothing else uses meanwhile.
             unsafe { sum.values() }.copy_from_slice(unsafe { now.values() });
             for (i, stage) in steps.stages.iter().enumerate() {
                 if keep {
+                    // SAFETY: a part of `scratch` that nothing else uses meanwhile.
                     room[slot..slot + size].copy_from_slice(unsafe { trial.values() });
                     slot += size;
                 }
@@ -197,13 +200,16 @@ per_lanes! {
                 let further =
                     steps.stages.get(i + 1).map_or(0.0, |next| steps.step * next.from_before);
                 let weight = steps.step * stage.weight;
+                // SAFETY: a part of `scratch` that nothing else uses meanwhile.
                 let (now, trial) = unsafe { (now.values(), trial.values()) };
+                // SAFETY: a part of `scratch` that nothing else uses meanwhile.
                 let (sum, k) = unsafe { (sum.values(), k.values()) };
                 for i in 0..size {
                     sum[i] += k[i] * weight;
                     trial[i] = now[i] + k[i] * further;
                 }
             }
+            // SAFETY: a part of `scratch` that nothing else uses meanwhile.
             unsafe { now.values() }.copy_from_slice(unsafe { sum.values() });
         }
     }
@@ -233,35 +239,43 @@ per_lanes! {
         let [_, constants, theta, derived] = lists.map(Part::read);
         let moving = [trial, Part::read(u), weight, Part::of(registers), pulled];
         let program = resolved(back, [constants, theta, derived], moving);
-        // SAFETY, here and below: five parts of `scratch`, used by nothing else while the
+        // SAFETY: here and below, five parts of `scratch`, used by nothing else while the
         // program does not run
         unsafe { lambda.values() }.copy_from_slice(&along_end[..size]);
         let mut slot = steps.substeps * steps.stages.len() * size;
         for _ in 0..steps.substeps {
+            // SAFETY: a part of `scratch` that nothing else uses meanwhile.
             unsafe { sum.values() }.copy_from_slice(unsafe { lambda.values() });
+            // SAFETY: a part of `scratch` that nothing else uses meanwhile.
             unsafe { pulled.values() }.fill(R::constant(0.0));
             // a stage enters the result and, except the last, the next stage
             let mut into_next = 0.0;
             for stage in steps.stages.iter().rev() {
                 let (own, later) = (steps.step * stage.weight, steps.step * into_next);
                 into_next = stage.from_before;
+                // SAFETY: a part of `scratch` that nothing else uses meanwhile.
                 let (lambda, weight) = unsafe { (lambda.values(), weight.values()) };
+                // SAFETY: a part of `scratch` that nothing else uses meanwhile.
                 let before = unsafe { pulled.values() };
                 for i in 0..size {
                     weight[i] = lambda[i] * own + before[i] * later;
                 }
                 slot -= size;
+                // SAFETY: a part of `scratch` that nothing else uses meanwhile.
                 unsafe { trial.values() }.copy_from_slice(&room[slot..slot + size]);
                 // SAFETY: `trial` and `weight` are only read, `registers` and `pulled` only
                 // written here
                 unsafe { run(&program) };
+                // SAFETY: a part of `scratch` that nothing else uses meanwhile.
                 let (sum, pulled) = unsafe { (sum.values(), pulled.values()) };
                 for i in 0..size {
                     sum[i] += pulled[i];
                 }
             }
+            // SAFETY: a part of `scratch` that nothing else uses meanwhile.
             unsafe { lambda.values() }.copy_from_slice(unsafe { sum.values() });
         }
+        // SAFETY: a part of `scratch` that nothing else uses meanwhile.
         let lambda = unsafe { lambda.values() };
         for (to, &from) in along.iter_mut().zip(lambda.iter()) {
             *to += from;

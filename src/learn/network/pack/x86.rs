@@ -25,59 +25,72 @@ macro_rules! pack {
 
             #[inline(always)]
             fn splat(x: $t) -> Self {
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $set(x) })
             }
             #[inline(always)]
             unsafe fn load(from: *const $t) -> Self {
+                // SAFETY: only kernels for processors with these features use the type; the pointer is the caller's promise.
                 Self(unsafe { $load(from) })
             }
             #[inline(always)]
             unsafe fn store(self, to: *mut $t) {
+                // SAFETY: only kernels for processors with these features use the type; the pointer is the caller's promise.
                 unsafe { $store(to, self.0) }
             }
             #[inline(always)]
             fn add(self, b: Self) -> Self {
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $add(self.0, b.0) })
             }
             #[inline(always)]
             fn sub(self, b: Self) -> Self {
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $sub(self.0, b.0) })
             }
             #[inline(always)]
             fn mul(self, b: Self) -> Self {
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $mul(self.0, b.0) })
             }
             #[inline(always)]
             fn fma(self, b: Self, c: Self) -> Self {
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $fma(self.0, b.0, c.0) })
             }
             #[inline(always)]
             fn fnma(self, b: Self, c: Self) -> Self {
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $fnma(self.0, b.0, c.0) })
             }
             #[inline(always)]
             fn abs(self) -> Self {
                 let $a = self.0;
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $abs })
             }
             #[inline(always)]
             fn signed_as(self, of: Self) -> Self {
                 let ($a, $b) = (self.0, of.0);
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $signed })
             }
             #[inline(always)]
             fn at_least(self, limit: Self) -> Self {
                 // the second operand is what comes out where either is not a number
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $max(limit.0, self.0) })
             }
             #[inline(always)]
             fn power_of_two(self) -> Self {
                 let $a = self.0;
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $power })
             }
             #[inline(always)]
             fn divided(self, by: Self) -> Self {
                 let ($a, $b) = (self.0, by.0);
+                // SAFETY: only kernels for processors with these features use the type.
                 Self(unsafe { $divided })
             }
         }
@@ -88,6 +101,7 @@ macro_rules! pack {
 /// its remainder. A division would take three times as long.
 #[inline(always)]
 unsafe fn quotient_f64(a: __m512d, b: __m512d) -> __m512d {
+    // SAFETY: only kernels for processors with these features use the type.
     unsafe {
         let q = _mm512_rcp14_pd(b);
         let miss = _mm512_fnmadd_pd(b, q, _mm512_set1_pd(1.0));
@@ -100,6 +114,7 @@ unsafe fn quotient_f64(a: __m512d, b: __m512d) -> __m512d {
 /// The same in single precision, where 28 bits are enough to begin with.
 #[inline(always)]
 unsafe fn quotient_f32(a: __m512, b: __m512) -> __m512 {
+    // SAFETY: only kernels for processors with these features use the type.
     unsafe {
         let q = _mm512_rcp14_ps(b);
         let miss = _mm512_fnmadd_ps(b, q, _mm512_set1_ps(1.0));
