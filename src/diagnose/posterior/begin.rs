@@ -87,7 +87,7 @@ fn sized(item: &Item, sizes: &[f64]) -> Vec<f64> {
 fn points(item: &Item, sizes: &[f64], far: bool) -> Vec<Vec<f64>> {
     let cause = &item.cause;
     let own = sized(item, sizes);
-    if !cause.blended() && !cause.thresholds && !(far && cause.linear.len() == 1) {
+    if !(cause.blended() || cause.thresholds || far && cause.linear.len() == 1) {
         return vec![own];
     }
     let mut points = starts::points(cause, item.start, sizes, item.probe, None);
