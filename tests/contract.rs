@@ -3,6 +3,7 @@
 mod drifting;
 mod extended;
 mod files;
+mod learned;
 mod neutral;
 mod numbers;
 mod refusals;

@@ -8,6 +8,7 @@ mod files;
 mod fitted_model;
 mod fuzz;
 mod house;
+mod learned_part;
 mod linear;
 mod optimise;
 mod paper_msd;

@@ -84,7 +84,7 @@ fn trainer(epochs: usize) -> Trainer {
         batch: 100,
         epochs,
         seed: 4,
-        optimiser: Adam { rate: 5e-3, ..Adam::default() },
+        optimiser: Adam { rate: 5e-3, ..Adam::default() }.into(),
         validation: Validation { lengths: vec![5, 20], sections: 200, ..Validation::default() },
         ..Trainer::default()
     }
@@ -221,7 +221,7 @@ fn turns_back_from_infinity_and_says_so() {
     let Task { training, validation, .. } = task();
     // steps so long that the model explodes: its spring is cubic
     let model = start(&duffing(2.0, 30.0), &training[0], &[]);
-    let optimiser = Adam { rate: 1e3, ..Adam::default() };
+    let optimiser = Adam { rate: 1e3, ..Adam::default() }.into();
     let wild = Trainer { optimiser, ..trainer(6) };
     let fit = wild.fit(&model, &training, &validation, &mut ()).unwrap();
     assert!(fit.rollbacks > 0);
@@ -234,7 +234,7 @@ fn turns_back_from_infinity_and_says_so() {
 #[test]
 fn stops_when_nothing_is_gained_any_more() {
     let Task { model, training, validation } = task();
-    let optimiser = Adam { rate: 0.3, ..Adam::default() };
+    let optimiser = Adam { rate: 0.3, ..Adam::default() }.into();
     let eager = Trainer { optimiser, patience: Some(3), ..trainer(200) };
     let fit = eager.fit(&model, &training, &validation, &mut ()).unwrap();
     assert_eq!(fit.ended, Ended::Patience);

@@ -9,8 +9,9 @@ use super::input;
 use super::outputs;
 use lacuna::diagnose::Diagnosis;
 use lacuna::digits::number;
-use lacuna::estimate::{Estimated, estimate_with};
-use lacuna::file::save_with;
+use lacuna::estimate::{Estimated, estimate_by, estimate_with};
+use lacuna::file::{Document, Format, save_with};
+use lacuna::optimise::Named;
 use lacuna::report::{cause_document, sentences};
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
@@ -29,7 +30,13 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     for fault in &faults {
         look.result(&sentences::cause(fault));
     }
-    let estimate = estimate_with(&system, &records, &args.fix, seed, look)?;
+    let estimate = match &args.optimiser {
+        None => estimate_with(&system, &records, &args.fix, seed, look)?,
+        Some(text) => {
+            let Named(optimiser) = named(text)?;
+            estimate_by(&system, &records, &args.fix, optimiser.as_ref(), seed, look)?
+        }
+    };
     look.clear();
     save_with(&estimate.system, &args.out, &["Written by `lacuna estimate`.".into()])?;
     for parameter in &estimate.parameters {
@@ -76,4 +83,17 @@ fn line(p: &Estimated) -> String {
         None => " (the record does not tell)".into(),
     };
     format!("{} = {value}{spread} {} (was {})", p.name, p.unit, number(p.from, None))
+}
+
+/// An optimiser by its name, its settings, or a file with these.
+fn named(text: &str) -> Result<Named, Failure> {
+    let path = std::path::Path::new(text);
+    let document = if path.is_file() {
+        Document::load(path)?
+    } else {
+        let is_name = text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        let text = if is_name { format!("[{text}]") } else { text.to_string() };
+        Document::parse(&text, "--optimiser", Format::Toml)?
+    };
+    Ok(document.read()?)
 }

@@ -20,7 +20,7 @@ use lacuna::file::{Document, save_with, write_text};
 use lacuna::lfr::AugmentedModel;
 use lacuna::report::{Shown, TrainingReport};
 use lacuna::system::System;
-use lacuna::train::{Checkpoint, Ended, Epoch, Fit, Recipe, Run};
+use lacuna::train::{Ablation, Checkpoint, Ended, Epoch, Fit, Recipe, Run, ablate, warnings};
 
 use progress::{Following, Progress};
 
@@ -78,10 +78,15 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     }
     let lengths = recipe.training.validation.lengths.clone();
     let page = Following::of(args.out.join(PAGE), &want.outputs, &lengths);
-    let mut progress = Progress::of(look, recipe.training.epochs, page);
-    let fit = recipe.training.fit(&start, &records, &validation, &mut progress)?;
+    let mut progress = Progress::of(look, recipe.training.all_epochs(), page);
+    let mut fit = recipe.training.fit(&start, &records, &validation, &mut progress)?;
     look.clear();
-    let done = Done { args, system: &system, recipe: &recipe, fit: &fit, want: &want.outputs };
+    let mut parts = vec![];
+    if fit.ended != Ended::Asked {
+        parts = ablate(&mut fit, &validation, recipe.training.sparse.prune)?;
+    }
+    let (fit, want) = (&fit, &want.outputs[..]);
+    let done = Done { args, system: &system, recipe: &recipe, fit, want, parts: &parts };
     done.write(&started.to_string(), test.as_ref().or(validation.first()), test.is_some(), look)
 }
 
@@ -92,6 +97,7 @@ struct Done<'a> {
     recipe: &'a Recipe,
     fit: &'a Fit,
     want: &'a [(String, String)],
+    parts: &'a [Ablation],
 }
 
 impl Done<'_> {
@@ -117,6 +123,9 @@ impl Done<'_> {
         let mut report =
             TrainingReport::of(fit, self.want, &self.recipe.training.validation.lengths)
                 .noting(started);
+        for text in self.said() {
+            report = report.noting(&text);
+        }
         let (mut run, mut before) = (None, vec![]);
         if let Some(record) = shown {
             before = Simulation::of(self.system, record, Init::Forgotten)?.outputs;
@@ -184,6 +193,9 @@ impl Done<'_> {
         if fit.rollbacks > 0 {
             look.result(&format!("{} steps led nowhere and were taken back.", fit.rollbacks));
         }
+        for text in self.said() {
+            look.result(&text);
+        }
         look.say(&format!("Wrote {} into {}", FILES.join(", "), out.display()));
         let last = fit.history.iter().find(|epoch| epoch.epoch == fit.epoch);
         let mut document = json!({
@@ -193,6 +205,8 @@ impl Done<'_> {
             "ended": fit.ended,
             "rollbacks": fit.rollbacks,
             "resumed_at": fit.resumed,
+            "parts": self.parts,
+            "warnings": warnings(fit),
             "validation": last.and_then(|epoch| epoch.score.as_ref()),
             "before": { which: Value::Object(before) },
             "after": { which: Value::Object(after) },
@@ -205,6 +219,13 @@ impl Done<'_> {
             document["interrupted"] = json!(true);
         }
         look.document(&document);
+    }
+
+    /// What the parts of the model are worth, and what the course of the training warns of.
+    fn said(&self) -> Vec<String> {
+        let mut said: Vec<String> = self.parts.iter().map(ToString::to_string).collect();
+        said.extend(warnings(self.fit).into_iter().map(|text| format!("Warning: {text}")));
+        said
     }
 
     fn history(&self) -> String {

@@ -1,5 +1,6 @@
 //! The fit itself: simulation error, several starts, bounds, intervals.
 
+mod lower;
 mod starts;
 mod told;
 
@@ -10,7 +11,7 @@ use super::rank::Combination;
 use crate::data::Record;
 use crate::effect::Role;
 use crate::evaluate::{EvaluateError, Init, Run};
-use crate::optimise::{Levenberg, Settings, Unknown};
+use crate::optimise::{Levenberg, Optimiser, Settings, Unknown};
 use crate::statistics::deviation;
 use crate::system::{Lane, System};
 use crate::watch::Watch;
@@ -91,6 +92,30 @@ pub fn estimate_with(
     watch.tell(0.3, "fitting");
     let settings = Settings { iterations: 60, tolerance: 1e-9, difference: 1e-5 };
     let done = fit.run(&[best], settings, usize::MAX).swap_remove(0);
+    watch.tell(1.0, "done");
+    fit.told(&done, before)
+}
+
+/// The same by an optimiser of the caller's choice, from the best start; errors are those at the
+/// point where it ends.
+///
+/// # Errors
+///
+/// As [`estimate`], and what the optimiser refuses.
+pub fn estimate_by(
+    system: &System,
+    records: &[Record],
+    held: &[String],
+    optimiser: &dyn Optimiser,
+    seed: u64,
+    watch: &dyn Watch,
+) -> Result<Estimate, EvaluateError> {
+    let fit = Fit::new(system, records, held, watch)?;
+    watch.tell(0.0, "trying starts");
+    let (best, before) = fit.best_start(seed)?;
+    watch.tell(0.3, "fitting");
+    let point = fit.lower(optimiser, best)?;
+    let done = fit.linearised(&point);
     watch.tell(1.0, "done");
     fit.told(&done, before)
 }

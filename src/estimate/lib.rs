@@ -7,8 +7,8 @@ mod fit;
 mod linear;
 mod rank;
 
-pub use fit::estimate_with;
 pub use fit::{Estimate, Estimated, estimate};
+pub use fit::{estimate_by, estimate_with};
 pub use linear::linear_with;
 pub use linear::{LinearError, LinearEstimate, LinearParameter, Mode, linear};
 pub use rank::Combination;

@@ -1,6 +1,8 @@
 //! An optimiser: steps of fixed size along the sign of a momentum.
 
-use lacuna::optimise::{Objective, Observer, OptimiseError, Optimiser, Outcome, Progress, Stopped};
+use lacuna::optimise::{
+    AdamState, Objective, Observer, OptimiseError, Optimiser, Outcome, Progress, Stopped,
+};
 use serde::{Deserialize, Serialize};
 
 /// Chen et al., Symbolic discovery of optimization algorithms, 2023, algorithm 2, with a rate
@@ -58,5 +60,30 @@ impl Optimiser for Lion {
         let gradient = slope.iter().fold(0.0_f64, |m, g| m.max(g.abs()));
         let evaluations = taken + 1;
         Ok(Outcome { stopped, steps: taken, loss: best_loss, gradient, evaluations, rollbacks: 0 })
+    }
+
+    /// Training moves after every batch; the momentum is the state's first vector.
+    fn steps_by_batch(&self) -> bool {
+        true
+    }
+
+    fn batch_step(
+        &self,
+        state: &mut AdamState,
+        theta: &mut [f64],
+        gradient: &[f64],
+    ) -> Result<f64, OptimiseError> {
+        let rate = self.batch_rate(state);
+        state.step += 1;
+        for ((t, m), g) in theta.iter_mut().zip(&mut state.first).zip(gradient) {
+            *t -= rate * (0.9 * *m + 0.1 * g).signum();
+            *m = 0.99 * *m + 0.01 * g;
+        }
+        Ok(rate)
+    }
+
+    fn batch_rate(&self, state: &AdamState) -> f64 {
+        let done = (state.step as f64 / self.steps.max(1) as f64).min(1.0);
+        self.rate * (1.0 - done) * state.slowed
     }
 }

@@ -24,6 +24,9 @@ pub struct Estimate {
     /// Parameters that are right
     #[arg(long, value_name = "PARAMETER", value_delimiter = ',', num_args = 1.., conflicts_with = "lti")]
     pub fix: Vec<String>,
+    /// Another optimiser: its name, its settings (`lbfgs = { memory = 20 }`), or a file with them
+    #[arg(long, value_name = "OPTIMISER", conflicts_with = "lti")]
+    pub optimiser: Option<String>,
     #[command(flatten)]
     pub columns: Columns,
     /// Time between two samples in s, for records without a column `time`

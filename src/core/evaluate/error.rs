@@ -70,6 +70,12 @@ pub enum EvaluateError {
     /// There is nothing to estimate.
     #[error("the model has no free parameter to estimate")]
     NothingFree,
+    /// The optimiser that was asked for refuses.
+    #[error("the optimiser stopped: {reason}")]
+    Optimiser {
+        /// What it says.
+        reason: String,
+    },
 }
 
 impl Explain for EvaluateError {
@@ -94,7 +100,9 @@ impl Explain for EvaluateError {
                 Place { file: Some(record.clone()), ..Place::default() }
             }
             Self::NoParameter { name, .. } => Place { key: Some(name.clone()), ..Place::default() },
-            Self::NothingFree | Self::NotWritten { .. } => Place::default(),
+            Self::NothingFree | Self::NotWritten { .. } | Self::Optimiser { .. } => {
+                Place::default()
+            }
         }
     }
 
@@ -125,6 +133,7 @@ impl Explain for EvaluateError {
                     None => format!("there are: {}", known.join(", ")),
                 }
             }
+            Self::Optimiser { .. } => "change its settings, or leave `--optimiser` out".into(),
             Self::NothingFree => "remove `fixed` from a parameter".into(),
         })
     }

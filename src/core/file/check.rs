@@ -3,9 +3,10 @@
 use serde::Deserialize;
 
 use super::beside::gathered;
+use super::complaint::Complaint;
 use super::document::Document;
 use super::error::FileError;
-use super::node::{Node, Value};
+use super::node::{Entry, Node, Value};
 use super::written::{declared, placed, rest};
 use crate::fault::Explain;
 use crate::model::StateSpaceModel;
@@ -31,6 +32,8 @@ struct Keys {
 pub fn system(document: &Document) -> Result<System, FileError> {
     let gathered = gathered(document)?;
     let document = gathered.as_ref().unwrap_or(document);
+    let looped = looped(document)?;
+    let document = looped.as_ref().unwrap_or(document);
     let written = declared(document)?;
     let keys = if written.is_empty() {
         document.read()?
@@ -53,6 +56,29 @@ pub fn system(document: &Document) -> Result<System, FileError> {
             Err(FileError::System { at, error: Box::new(error) })
         }
     }
+}
+
+/// The model that stands for a model with a controller beside it.
+const LOOP: &str = "closed_loop";
+
+/// A file with a table `[controller]` as what it is short for: the model `closed_loop`, whose
+/// plant is everything else in the file. None without such a table.
+fn looped(document: &Document) -> Result<Option<Document>, FileError> {
+    let root = document.root();
+    let (Value::Table(entries), Some(controller)) = (&root.value, root.entry("controller")) else {
+        return Ok(None);
+    };
+    let Some(step) = entries.iter().find(|entry| entry.key == "sampling_time") else {
+        let complaint = Complaint::MissingKey { key: "sampling_time".into() };
+        return Err(document.fault("controller", controller.at.clone(), complaint));
+    };
+    let table =
+        |entries: Vec<Entry>| Node { span: root.span.clone(), value: Value::Table(entries) };
+    let entry = |key: &str, node: Node| Entry { key: key.into(), at: controller.at.clone(), node };
+    let plant = entries.iter().filter(|entry| entry.key != "controller").cloned().collect();
+    let inside = table(vec![entry("plant", table(plant)), controller.clone()]);
+    let model = entry("model", table(vec![entry(LOOP, inside)]));
+    Ok(Some(document.holding(table(vec![step.clone(), model]))))
 }
 
 /// What the model has against its own values.

@@ -235,6 +235,13 @@ pub trait Law: Debug + Send + Sync {
         2
     }
 
+    /// Whether this is a discrete-time law whose inputs move along a straight line to the next
+    /// sample (first-order hold): it then declares one channel per input, in which it finds how
+    /// far that moves, u_{k+1} - u_k.
+    fn ramped(&self) -> bool {
+        false
+    }
+
     /// Where a parameter's value stands in the model's own table: keys and list positions
     /// joined by dots (`masses.0`).
     fn key(&self, parameter: &str) -> String {

@@ -230,4 +230,25 @@ impl Optimiser for Adam {
         let stopped = ended.unwrap_or(super::Stopped::Budget);
         Ok(watch.end(stopped, theta))
     }
+
+    fn validate(&self) -> Result<(), OptimiseError> {
+        self.check()
+    }
+
+    fn steps_by_batch(&self) -> bool {
+        true
+    }
+
+    fn batch_step(
+        &self,
+        state: &mut AdamState,
+        theta: &mut [f64],
+        gradient: &[f64],
+    ) -> Result<f64, OptimiseError> {
+        self.step(state, theta, gradient).map(|step| step.rate)
+    }
+
+    fn batch_rate(&self, state: &AdamState) -> f64 {
+        self.rate * self.schedule.factor(state.step.max(1)) * state.slowed
+    }
 }

@@ -72,6 +72,12 @@ pub enum OptimiseError {
         /// The optimiser.
         optimiser: &'static str,
     },
+    /// A method that needs the whole objective at once.
+    #[error("`{optimiser}` has no step for a single batch")]
+    NoBatches {
+        /// The optimiser.
+        optimiser: &'static str,
+    },
     /// The library behind a method refused its settings.
     #[error("{optimiser} cannot be set up: {reason}")]
     NotSetUp {
@@ -109,6 +115,7 @@ impl Explain for OptimiseError {
                  parameters"
                 .into(),
             Self::NotLeastSquares { .. } => "use `lbfgs` or `adam` for it".into(),
+            Self::NoBatches { .. } => "hand over the whole objective".into(),
             Self::NotSetUp { .. } => "use the default settings".into(),
         })
     }

@@ -23,6 +23,7 @@ mod error;
 mod lbfgs;
 pub mod levenberg;
 mod marquardt;
+mod named;
 mod objective;
 mod observe;
 mod schedule;
@@ -36,6 +37,7 @@ pub use error::OptimiseError;
 pub use lbfgs::Lbfgs;
 pub use levenberg::{Levenberg, Settings, Unknown};
 pub use marquardt::LevenbergMarquardt;
+pub use named::Named;
 pub use objective::{LeastSquares, Objective};
 pub use observe::{Observer, Outcome, Progress, Stopped};
 pub use schedule::Schedule;
@@ -72,4 +74,42 @@ pub trait Optimiser: std::fmt::Debug + Send + Sync {
         theta: &mut [f64],
         observer: &mut dyn Observer,
     ) -> Result<Outcome, OptimiseError>;
+
+    /// Checks all settings, so that a mistake is told before any work.
+    ///
+    /// # Errors
+    ///
+    /// The first one out of range.
+    fn validate(&self) -> Result<(), OptimiseError> {
+        Ok(())
+    }
+
+    /// Whether [`Optimiser::batch_step`] is there: training then moves after every batch.
+    /// Otherwise it hands over the whole objective, epoch by epoch.
+    fn steps_by_batch(&self) -> bool {
+        false
+    }
+
+    /// One step against the gradient of one batch, with what is remembered between steps in
+    /// `state` (a count and two vectors, which checkpoints keep); gives the rate that was used.
+    /// `theta`, `gradient` and the vectors of `state` have the same length.
+    ///
+    /// # Errors
+    ///
+    /// A slope that is not finite; nothing is moved then.
+    fn batch_step(
+        &self,
+        state: &mut AdamState,
+        theta: &mut [f64],
+        gradient: &[f64],
+    ) -> Result<f64, OptimiseError> {
+        let _ = (state, theta, gradient);
+        Err(OptimiseError::NoBatches { optimiser: self.typetag_name() })
+    }
+
+    /// The rate of the next step of [`Optimiser::batch_step`]; 0 where there is none.
+    fn batch_rate(&self, state: &AdamState) -> f64 {
+        let _ = state;
+        0.0
+    }
 }

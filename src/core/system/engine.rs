@@ -88,6 +88,9 @@ struct Run<'a, R> {
     no_w: Vec<R>,
     /// What else enters the own channels and the inputs: the disturbance of a filter.
     noise: Option<[Vec<R>; 2]>,
+    /// How far inputs move until the next sample, where the law finds that in its channels.
+    ramp: Vec<R>,
+    ramped: bool,
     y: Vec<R>,
     sums: Vec<R>,
     exact: Option<Exact<R>>,
@@ -150,6 +153,8 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             w: zeros(n.w),
             no_w: zeros(n.w),
             noise: None,
+            ramp: zeros(n.w),
+            ramped: law.ramped(),
             y: zeros(n.y),
             sums: zeros(1),
             first: true,
@@ -209,6 +214,15 @@ impl<'a, R: EffectNumber> Run<'a, R> {
     fn drive(&mut self, drive: &Drive, k: usize, end: usize, j: usize) {
         let base = self.base;
         let next = if k + 1 < end { k + 1 } else { k };
+        if self.ramped {
+            for pack in 0..self.packs {
+                let to = &mut self.ramp[pack * base.sizes.w..][..base.sizes.w];
+                for (to, series) in to.iter_mut().zip(&drive.inputs) {
+                    *to = R::constant(series[next] - series[k]);
+                }
+            }
+            self.w.copy_from_slice(&self.ramp);
+        }
         if base.hold == Hold::Zero && j > 0 && !self.groups.iter().any(|g| g.has_input_paths()) {
             return; // still there from the first step
         }
@@ -305,9 +319,9 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             if self.into_inputs {
                 self.u_in.copy_from_slice(u);
             }
-            self.w.fill(R::constant(0.0));
+            self.w.copy_from_slice(&self.ramp);
             if let Some([into_w, into_u]) = &self.noise {
-                self.w.copy_from_slice(into_w);
+                add(&mut self.w, into_w);
                 add(&mut self.u_in, into_u);
             }
             for group in self.groups.iter_mut().filter(|group| group.inside) {

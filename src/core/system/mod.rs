@@ -35,11 +35,13 @@ pub use engine::{Jacobian, Transition};
 pub use error::SystemError;
 pub use lane::{Drive, Lane, Route, Track};
 pub use placed::{AlsoInto, Placed};
-pub use plan::{Base, MOST_SUBSTEPS, Plan, Way};
+pub use plan::{Base, MOST_SUBSTEPS, Plan, Slot, Way};
 pub use rates::points;
 pub use recorded::{Recorded, RecordedParameter, Remembered};
 pub use sampling::{Hold, Integrator, Method, Sampling};
+pub use sight::{Found, Sight, find};
 pub use tables::Origin;
+pub use wiring::EffectNumber;
 
 /// A model, how it is sampled, and the effects that extend it.
 ///

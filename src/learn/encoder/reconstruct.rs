@@ -151,6 +151,10 @@ impl Reconstruction {
     /// # Ok::<(), lacuna::encoder::EncoderError>(())
     /// ```
     ///
+    /// What the outputs do not fix may be left open where the window is long enough to forget
+    /// it: x_k is determined where A^n x = 0 for every x with O x = 0 (reconstructability;
+    /// Kailath, *Linear Systems*, sec. 6.2), as it is for the past of a delay.
+    ///
     /// # Errors
     ///
     /// [`EncoderError::Unobservable`] with the states that the outputs do not fix.
@@ -159,17 +163,43 @@ impl Reconstruction {
         window: Window,
         names: &[String],
     ) -> Result<Self, EncoderError> {
+        Self::resting(linear, window, names, |_| false).map(|(found, _)| found)
+    }
+
+    /// The same, with those states that the outputs do not fix and that `may_rest` holds for
+    /// taken to be 0 at the oldest sample; these are given too.
+    pub(crate) fn resting(
+        linear: &SampledLinear,
+        window: Window,
+        names: &[String],
+        may_rest: impl Fn(usize) -> bool,
+    ) -> Result<(Self, Vec<usize>), EncoderError> {
         let (n, nu, ny) = (linear.a.nrows(), linear.b.ncols(), linear.c.nrows());
         let past = if nu == 0 { window.n_a } else { window.n_a.min(window.n_b) };
         let current = window.current_sample;
         let samples = past + usize::from(current);
         let blocks = Blocks::of(linear, past, current);
-        let inverse = left_inverse(&blocks.observability).map_err(|hidden| {
-            let named = |&i: &usize| names.get(i).cloned().unwrap_or_else(|| format!("x{}", i + 1));
-            let rank = n - hidden.deficiency;
-            let hidden = hidden.states.iter().map(named).collect();
-            EncoderError::Unobservable { hidden, rank, states: n, samples }
-        })?;
+        let mut rest = vec![];
+        let inverse = loop {
+            let mut seen = blocks.observability.clone();
+            rest.iter().for_each(|&state| seen.column_mut(state).fill(0.0));
+            let mut forgets = blocks.transition.clone();
+            rest.iter().for_each(|&state| forgets.column_mut(state).fill(0.0));
+            let hidden = match left_inverse(&seen, &forgets) {
+                Ok(inverse) => break inverse,
+                Err(hidden) => hidden,
+            };
+            let still = |state: &usize| may_rest(*state) && !rest.contains(state);
+            let more: Vec<usize> = hidden.states.iter().copied().filter(still).collect();
+            if more.is_empty() {
+                let named =
+                    |&i: &usize| names.get(i).cloned().unwrap_or_else(|| format!("x{}", i + 1));
+                let rank = n - hidden.deficiency;
+                let hidden = hidden.states.iter().map(named).collect();
+                return Err(EncoderError::Unobservable { hidden, rank, states: n, samples });
+            }
+            rest.extend(more);
+        };
         let back = &blocks.transition * inverse.matrix;
         let identity = DMatrix::identity(samples * ny, samples * ny);
         let w_y = &back * (identity - blocks.outputs) + blocks.outputs_to_state;
@@ -184,13 +214,15 @@ impl Reconstruction {
             bias += own.column(nu);
         }
         let map = LinearMap { weights, bias };
-        Ok(Self { map, rank: n, condition: inverse.condition })
+        let rank = inverse.rank;
+        Ok((Self { map, rank, condition: inverse.condition }, rest))
     }
 }
 
 /// A left inverse and how well it is determined.
 struct LeftInverse {
     matrix: DMatrix<f64>,
+    rank: usize,
     condition: f64,
 }
 
@@ -200,18 +232,19 @@ struct Hidden {
     deficiency: usize,
 }
 
-/// The Moore-Penrose inverse of a matrix with full column rank. Columns are brought to
-/// length 1 first, which does not change it but lets units of states differ.
-fn left_inverse(matrix: &DMatrix<f64>) -> Result<LeftInverse, Hidden> {
+/// The Moore-Penrose inverse of a matrix that tells apart everything that `forgets` does not
+/// take to 0. Columns are brought to length 1 first, which lets units of states differ (and does
+/// not change the inverse where the rank is full).
+fn left_inverse(matrix: &DMatrix<f64>, forgets: &DMatrix<f64>) -> Result<LeftInverse, Hidden> {
     let n = matrix.ncols();
     let lengths: Vec<f64> = matrix.column_iter().map(|c| c.norm()).collect();
     let longest = lengths.iter().fold(0.0, |most: f64, &l| most.max(l));
     let silent = |length: f64| length <= f64::MIN_POSITIVE.max(1e-200 * longest);
+    let lengths: Vec<f64> =
+        lengths.into_iter().map(|length| if silent(length) { 1.0 } else { length }).collect();
     let mut scaled = matrix.clone();
     for (mut column, &length) in scaled.column_iter_mut().zip(&lengths) {
-        if !silent(length) {
-            column /= length;
-        }
+        column /= length;
     }
     // at least as many rows as columns, so that all right singular vectors are there
     let rows = scaled.nrows().max(n);
@@ -224,7 +257,12 @@ fn left_inverse(matrix: &DMatrix<f64>) -> Result<LeftInverse, Hidden> {
     let largest = svd.singular_values.max();
     let lost: Vec<usize> =
         (0..n).filter(|&i| svd.singular_values[i] <= RANK * largest || largest == 0.0).collect();
-    if !lost.is_empty() {
+    // what remains at the end of the window of a direction that no output shows
+    let remains = |i: usize| {
+        let along = DVector::from_fn(n, |state, _| v_t[(i, state)] / lengths[state]);
+        (forgets * &along).norm() > 1e-9 * along.norm()
+    };
+    if lost.iter().any(|&i| remains(i)) {
         let unseen = |state: &usize| {
             lost.iter().map(|&i| v_t[(i, *state)].powi(2)).sum::<f64>().sqrt() > 1e-6
         };
@@ -232,12 +270,15 @@ fn left_inverse(matrix: &DMatrix<f64>) -> Result<LeftInverse, Hidden> {
     }
     let mut inverse = v_t.transpose();
     for i in 0..n {
-        inverse.column_mut(i).scale_mut(1.0 / svd.singular_values[i]);
+        let part = if lost.contains(&i) { 0.0 } else { 1.0 / svd.singular_values[i] };
+        inverse.column_mut(i).scale_mut(part);
     }
     let mut inverse = inverse * u.transpose();
     for (i, &length) in lengths.iter().enumerate() {
         inverse.row_mut(i).scale_mut(1.0 / length);
     }
-    let condition = largest / svd.singular_values.min();
-    Ok(LeftInverse { matrix: inverse.columns(0, matrix.nrows()).into_owned(), condition })
+    let told = (0..n).filter(|i| !lost.contains(i)).map(|i| svd.singular_values[i]);
+    let condition = largest / told.fold(largest, f64::min);
+    let rank = n - lost.len();
+    Ok(LeftInverse { matrix: inverse.columns(0, matrix.nrows()).into_owned(), rank, condition })
 }

@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::slopes::{Map, There};
+use super::slopes::{Map, There, ramps};
 use super::{About, EncoderError};
-use crate::system::{Hold, Plan, System};
+use crate::system::{Plan, System};
 
 /// x_{k+1} = A x_k + B u_k + f + K e_k, y_k = C x_k + D u_k + h + e_k.
 ///
@@ -30,31 +30,39 @@ pub struct SampledLinear {
 }
 
 impl SampledLinear {
-    /// A linear system without effects, exactly: its own matrices where it is discrete, the
-    /// zero-order-hold ones where it is continuous. `None` for any other system.
-    pub(crate) fn exactly(system: &System, plan: &Plan) -> Option<Self> {
-        if !system.effects.is_empty() {
+    /// A linear system without effects, exactly: its own matrices where it is discrete, those
+    /// of its hold where it is continuous. `None` for any other system.
+    pub(crate) fn exactly(system_of: &System, plan: &Plan) -> Option<Lead> {
+        if !system_of.effects.is_empty() {
             return None;
         }
-        let m = system.model.matrices(&plan.signals.theta())?;
-        let k = system.model.innovation_gain();
+        let m = system_of.model.matrices(&plan.signals.theta())?;
+        let k = system_of.model.innovation_gain();
         if !plan.signals.time.is_continuous() {
-            return Some(Self { a: m.a, b: m.b, f: m.f, c: m.c, d: m.d, h: m.h, k });
+            return Some(Lead::none(Self { a: m.a, b: m.b, f: m.f, c: m.c, d: m.d, h: m.h, k }));
         }
-        let (n, nu) = (m.a.nrows(), m.b.ncols());
-        let mut big = DMatrix::zeros(n + nu + 1, n + nu + 1);
+        // x' = A x + B u + f, u' = r, with r = 0 where inputs are held (Van Loan)
+        let (n, nu, t) = (m.a.nrows(), m.b.ncols(), plan.sampling_time);
+        let mut big = DMatrix::zeros(n + 2 * nu + 1, n + 2 * nu + 1);
         big.view_mut((0, 0), (n, n)).copy_from(&m.a);
         big.view_mut((0, n), (n, nu)).copy_from(&m.b);
-        big.view_mut((0, n + nu), (n, 1)).copy_from(&m.f);
-        let big = (big * plan.sampling_time).exp();
-        Some(Self {
+        big.view_mut((n, n + nu), (nu, nu)).fill_with_identity();
+        big.view_mut((0, n + 2 * nu), (n, 1)).copy_from(&m.f);
+        let big = (big * t).exp();
+        let held = big.view((0, n), (n, nu)).into_owned();
+        let moved = big.view((0, n + nu), (n, nu)) / t;
+        let system = Self {
             a: big.view((0, 0), (n, n)).into_owned(),
-            b: big.view((0, n), (n, nu)).into_owned(),
-            f: big.column(n + nu).rows(0, n).into_owned(),
+            b: held.clone(),
+            f: big.column(n + 2 * nu).rows(0, n).into_owned(),
             c: m.c,
             d: m.d,
             h: m.h,
             k,
+        };
+        Some(match ramps(system_of, plan) {
+            true => Lead::of(system, &(&held - &moved), moved),
+            false => Lead::none(system),
         })
     }
 
@@ -75,7 +83,10 @@ impl SampledLinear {
         scales: &[f64],
     ) -> Result<Self, EncoderError> {
         let plan = system.plan(sampling_time)?;
-        Self::of_plan(system, &plan, about, scales)
+        if ramps(system, &plan) {
+            return Err(EncoderError::Hold { initialiser: "linearised" });
+        }
+        Ok(Self::of_plan(system, &plan, about, scales)?.system)
     }
 
     pub(crate) fn of_plan(
@@ -83,23 +94,56 @@ impl SampledLinear {
         plan: &Plan,
         about: &About,
         scales: &[f64],
-    ) -> Result<Self, EncoderError> {
-        if plan.hold != Hold::Zero {
-            return Err(EncoderError::Hold { initialiser: "linearised" });
-        }
+    ) -> Result<Lead, EncoderError> {
         if let Some(exact) = Self::exactly(system, plan) {
             return Ok(exact);
         }
         let There { x, u, next, output } = Map::new(system, plan, scales).there(about)?;
         let (x, u) = (DVector::from_vec(x), DVector::from_vec(u));
-        Ok(Self {
-            f: next.value - &next.along_x * &x - &next.along_u * &u,
+        let nu = u.len();
+        let along = |from: usize| next.along_u.columns(from, nu).into_owned();
+        let now = along(0);
+        let ahead = (next.along_u.ncols() > nu).then(|| along(nu));
+        let both = ahead.as_ref().map_or(now.clone(), |ahead| &now + ahead);
+        let linear = Self {
+            f: next.value - &next.along_x * &x - &both * &u,
             h: output.value - &output.along_x * &x - &output.along_u * &u,
             a: next.along_x,
-            b: next.along_u,
+            b: now.clone(),
             c: output.along_x,
             d: output.along_u,
             k: system.model.innovation_gain(),
+        };
+        Ok(match ahead {
+            Some(ahead) => Lead::of(linear, &now, ahead),
+            None => Lead::none(linear),
         })
+    }
+}
+
+/// A sampled linear system, and what its state owes to the present inputs under first-order
+/// hold: x_{k+1} = A x_k + B0 u_k + B1 u_{k+1} + f is, with xi_k = x_k - B1 u_k,
+///
+/// ```text
+/// xi_{k+1} = A xi_k + (A B1 + B0) u_k + f,   y_k = C xi_k + (D + C B1) u_k + h
+/// ```
+///
+/// (Franklin, Powell, Workman, *Digital Control of Dynamic Systems*, the triangle hold).
+pub(crate) struct Lead {
+    /// The system in xi, or in x where inputs are held.
+    pub system: SampledLinear,
+    /// B1; none where inputs are held.
+    pub ahead: Option<DMatrix<f64>>,
+}
+
+impl Lead {
+    fn none(system: SampledLinear) -> Self {
+        Self { system, ahead: None }
+    }
+
+    fn of(mut system: SampledLinear, now: &DMatrix<f64>, ahead: DMatrix<f64>) -> Self {
+        system.b = &system.a * &ahead + now;
+        system.d += &system.c * &ahead;
+        Self { system, ahead: Some(ahead) }
     }
 }

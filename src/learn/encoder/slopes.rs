@@ -5,9 +5,10 @@ use nalgebra::{DMatrix, DVector};
 use super::{About, EncoderError};
 use crate::model::{Ask, Block, DIRECTIONS, Dual64, LaneNumber, StateSpaceModel};
 use crate::real::{F64x8, Real};
-use crate::system::{Drive, Lane, Method, Plan, System};
+use crate::system::{Drive, Hold, Lane, Method, Plan, System};
 
-/// Values and slopes of a function of states and inputs.
+/// Values and slopes of a function of states and inputs; of next states under first-order hold
+/// along the inputs now and, in further columns, at the next sample.
 pub(super) struct Slopes {
     pub value: DVector<f64>,
     pub along_x: DMatrix<f64>,
@@ -35,6 +36,11 @@ pub(super) struct There {
     pub u: Vec<f64>,
     pub next: Slopes,
     pub output: Slopes,
+}
+
+/// Whether inputs move along a line to the next sample.
+pub(super) fn ramps(system: &System, plan: &Plan) -> bool {
+    system.model.ramped() || plan.hold == Hold::First
 }
 
 fn fixed(values: &[f64]) -> Vec<Dual64> {
@@ -117,18 +123,23 @@ impl<'a> Map<'a> {
     /// eight lanes a call.
     fn ask(&self, law: &dyn StateSpaceModel, ask: Ask, x: &[f64], u: &[f64]) -> Slopes {
         let sizes = self.plan.sizes;
-        let (n, rows) = (x.len() + u.len(), sizes.answer(ask));
+        let ramped = ask == Ask::Derivative && law.ramped();
+        let moving = if ramped { u.len() } else { 0 };
+        let (n, rows) = (x.len() + u.len() + moving, sizes.answer(ask));
         let mut value = DVector::zeros(rows);
         let mut slopes = DMatrix::zeros(rows, n);
         let per_call = DIRECTIONS * F64x8::LANES;
         for first in (0..n.max(1)).step_by(per_call) {
             let mut at = fixed(x);
             at.extend(fixed(u));
+            at.extend(&self.w[..moving]);
             for (i, entry) in at.iter_mut().skip(first).take(per_call).enumerate() {
                 entry.slope[i % DIRECTIONS].set_lane(i / DIRECTIONS, 1.0);
             }
-            let (x, u) = at.split_at(x.len());
-            let (theta, w, derived) = (&self.theta, &self.w, &self.derived);
+            let (x, rest) = at.split_at(x.len());
+            let (u, ramp) = rest.split_at(u.len());
+            let (theta, derived) = (&self.theta, &self.derived);
+            let w = if ramped { ramp } else { &self.w[..] };
             let time = Dual64::constant(0.0);
             let block = Block { sizes, packs: 1, theta, derived, x, u, w, time };
             let mut out = vec![Dual64::constant(0.0); rows];
@@ -141,7 +152,15 @@ impl<'a> Map<'a> {
                 }
             }
         }
-        let along_u = slopes.columns(x.len(), u.len()).into_owned();
+        let mut along_u = slopes.columns(x.len(), u.len()).into_owned();
+        if ramped {
+            // F(u_k, u_{k+1} - u_k): along the inputs now, and along those of the next sample
+            let ramp = slopes.columns(x.len() + u.len(), u.len());
+            along_u = DMatrix::from_fn(rows, 2 * u.len(), |i, j| match j < u.len() {
+                true => along_u[(i, j)] - ramp[(i, j)],
+                false => ramp[(i, j - u.len())],
+            });
+        }
         Slopes { value, along_x: slopes.columns(0, x.len()).into_owned(), along_u }
     }
 
@@ -150,36 +169,42 @@ impl<'a> Map<'a> {
         if !self.plan.signals.time.is_continuous() {
             return self.ask(law, Ask::Derivative, x, u);
         }
-        let n = x.len();
+        let (n, nu, ramps) = (x.len(), u.len(), ramps(self.system, self.plan));
         let h = self.plan.step();
         let mut now = Slopes {
             value: DVector::from_column_slice(x),
             along_x: DMatrix::identity(n, n),
-            along_u: DMatrix::zeros(n, u.len()),
+            along_u: DMatrix::zeros(n, if ramps { 2 * nu } else { nu }),
         };
-        // the rate at a trial state that itself has slopes
-        let rate = |at: &Slopes| {
+        // the rate at a trial state that itself has slopes, after a share of the sample
+        let rate = |at: &Slopes, share: f64| {
             let own = self.ask(law, Ask::Derivative, at.value.as_slice(), u);
-            Slopes {
-                along_u: &own.along_x * &at.along_u + own.along_u,
-                along_x: own.along_x * &at.along_x,
-                value: own.value,
+            let mut along_u = &own.along_x * &at.along_u;
+            if ramps {
+                along_u
+                    .columns_mut(0, nu)
+                    .zip_apply(&own.along_u, |to, b| *to += (1.0 - share) * b);
+                along_u.columns_mut(nu, nu).zip_apply(&own.along_u, |to, b| *to += share * b);
+            } else {
+                along_u += own.along_u;
             }
+            Slopes { along_u, along_x: own.along_x * &at.along_x, value: own.value }
         };
         let moved = |from: &Slopes, rate: &Slopes, by: f64| Slopes {
             value: &from.value + &rate.value * by,
             along_x: &from.along_x + &rate.along_x * by,
             along_u: &from.along_u + &rate.along_u * by,
         };
-        for _ in 0..self.plan.substeps {
-            let k1 = rate(&now);
+        for step in 0..self.plan.substeps {
+            let share = |at: f64| (step as f64 + at) / self.plan.substeps as f64;
+            let k1 = rate(&now, share(0.0));
             if self.plan.method == Method::Euler {
                 now = moved(&now, &k1, h);
                 continue;
             }
-            let k2 = rate(&moved(&now, &k1, 0.5 * h));
-            let k3 = rate(&moved(&now, &k2, 0.5 * h));
-            let k4 = rate(&moved(&now, &k3, h));
+            let k2 = rate(&moved(&now, &k1, 0.5 * h), share(0.5));
+            let k3 = rate(&moved(&now, &k2, 0.5 * h), share(0.5));
+            let k4 = rate(&moved(&now, &k3, h), share(1.0));
             for (k, weight) in [(k1, 1.0), (k2, 2.0), (k3, 2.0), (k4, 1.0)] {
                 now = moved(&now, &k, weight * h / 6.0);
             }

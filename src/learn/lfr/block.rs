@@ -150,7 +150,8 @@ impl Baseline {
 
     /// Whether the inputs move along a straight line between samples.
     pub(crate) fn ramps(&self) -> bool {
-        self.system.sampling.hold == Hold::First && self.pace() != Pace::Discrete
+        self.system.model.ramped()
+            || self.system.sampling.hold == Hold::First && self.pace() != Pace::Discrete
     }
 }
 

@@ -136,18 +136,24 @@ impl<'a, E: Number> Driver<'a, E> {
         if self.ramps { &du[..self.sizes.u] } else { &[] }
     }
 
-    /// Asks the law; `time` gives each pack's.
+    /// Whether the law finds in its channels how far the inputs move.
+    pub(super) fn ramps_in_channels(&self) -> bool {
+        self.ramps && self.pace == Pace::Discrete
+    }
+
+    /// Asks the law; `time` gives each pack's. Channels are empty where nothing enters them.
     pub(super) fn ask<R: LaneNumber>(
         &self,
         ask: Ask,
         constants: &Constants<R>,
-        x: &[R],
-        u: &[R],
+        [x, u, w]: [&[R]; 3],
         time: impl Fn(usize) -> R,
         out: &mut [R],
     ) {
         let (sizes, packs) = (self.sizes, per_row::<E>());
-        let (theta, derived, w) = (&constants.theta[..], &constants.derived[..], &constants.w[..]);
+        let (theta, derived) = (&constants.theta[..], &constants.derived[..]);
+        // what is the same in all packs is taken from the first ones
+        let (w, each) = if w.is_empty() { (&constants.w[..], 0) } else { (w, sizes.w) };
         if !self.timed {
             // parameters are the same in all packs: a few copies stay near the processor
             let copy = size_of::<R>() * (sizes.theta + sizes.derived + sizes.w).max(1);
@@ -162,7 +168,7 @@ impl<'a, E: Number> Driver<'a, E> {
                     derived: &derived[..packs * sizes.derived],
                     x: &x[from * sizes.x..][..packs * sizes.x],
                     u: &u[from * sizes.u..][..packs * sizes.u],
-                    w: &w[..packs * sizes.w],
+                    w: &w[from * each..][..packs * sizes.w],
                     time,
                 };
                 let n = sizes.answer(ask);

@@ -45,8 +45,9 @@ impl Interconnection {
                         return Err(LfrError::Baseline { block: b, reason });
                     }
                     if !baseline.system.effects.is_empty() {
-                        let reason =
-                            "effects inside a baseline cannot be differentiated yet".into();
+                        let reason = "effects act between the samples that S joins: \
+                            `lfr::Sampled` makes a model of whole samples of both"
+                            .into();
                         return Err(LfrError::Baseline { block: b, reason });
                     }
                     let count = baseline.sizes().theta;

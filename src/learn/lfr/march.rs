@@ -17,6 +17,9 @@ pub(crate) struct Room<E: Number> {
     k: Vec<E::Lanes>,
     /// Inputs at the beginning of the sample and now.
     u: [Vec<E::Lanes>; 2],
+    /// How far they move until the next sample, for a law that finds it in its channels.
+    w: Vec<E::Lanes>,
+    dual_w: Vec<E::Slopes>,
     /// Trial states of all stages; going forward only the present one.
     kept: Vec<E::Lanes>,
     y: Vec<E::Lanes>,
@@ -47,12 +50,15 @@ impl<E: Number> Room<E> {
             }
             duals
         };
+        let ramps = if driver.ramps_in_channels() { n.w } else { 0 };
         let pair = |group: &Group<E>| [seeded(n.x, 0, group), seeded(n.u, n.x, group)];
         Self {
             x: zeros(n.x),
             sum: zeros(n.x),
             k: zeros(n.x),
             u: [zeros(n.u), zeros(n.u)],
+            w: zeros(ramps),
+            dual_w: vec![E::Slopes::constant(0.0); packs * ramps],
             kept: zeros(((stages + 1) * n.x).max(driver.march_room().div_ceil(packs))),
             y: zeros(n.y),
             lambda: zeros(n.x),
@@ -72,8 +78,8 @@ impl<E: Number> Room<E> {
         let back = [&self.lambda, &self.weight, &self.pulled, &self.pulled_u, &self.along_u];
         let plain: usize = plain.iter().chain(&back).map(|v| v.len()).sum();
         let duals: usize = self.duals.iter().flatten().map(Vec::len).sum();
-        (plain + self.along_theta.len()) * size_of::<E::Lanes>()
-            + (duals + self.results.len()) * size_of::<E::Slopes>()
+        (plain + self.along_theta.len() + self.w.len()) * size_of::<E::Lanes>()
+            + (duals + self.results.len() + self.dual_w.len()) * size_of::<E::Slopes>()
     }
 
     /// Copies x and u in.
@@ -83,11 +89,15 @@ impl<E: Number> Room<E> {
         combine::spread(lanes(u), &mut self.u[0], per_row::<E>());
         let [start, now] = &mut self.u;
         now.copy_from_slice(start);
+        if !self.w.is_empty() {
+            combine::spread(lanes(sight.du), &mut self.w, per_row::<E>());
+            combine::values(E::parts_mut(&mut self.dual_w), &self.w);
+        }
     }
 
     /// The inputs after a share of the sample.
     fn drive(&mut self, sight: Sight<'_, E>, share: f64) {
-        if !sight.du.is_empty() {
+        if !sight.du.is_empty() && self.w.is_empty() {
             let [start, now] = &mut self.u;
             combine::ramp(now, start, lanes(sight.du), per_row::<E>(), share);
         }
@@ -109,7 +119,8 @@ impl<E: Number> Room<E> {
                 let begin = if keep { first + i * size } else { 0 };
                 let trial = &self.kept[begin..begin + size];
                 let time = |p: usize| time::<E>(sight, p, at * h);
-                driver.ask(Ask::Derivative, &driver.plain, trial, &self.u[1], time, &mut self.k);
+                let seen = [trial, &self.u[1], &self.w];
+                driver.ask(Ask::Derivative, &driver.plain, seen, time, &mut self.k);
                 let further = tableau.get(i + 1).map_or(0.0, |next| h * next.from_before);
                 let next = if keep { begin + size } else { 0 };
                 let trial = &mut self.kept[next..next + size];
@@ -133,7 +144,8 @@ impl<E: Number> Room<E> {
     pub fn output(&mut self, driver: &Driver<'_, E>, sight: Sight<'_, E>, y: &mut [Row<E>]) {
         self.begin(driver, sight);
         let time = |p: usize| time::<E>(sight, p, 0.0);
-        driver.ask(Ask::Output, &driver.plain, &self.x, &self.u[1], time, &mut self.y);
+        let seen = [&self.x[..], &self.u[1], &self.w];
+        driver.ask(Ask::Output, &driver.plain, seen, time, &mut self.y);
         combine::collect(&self.y, lanes_mut(y), per_row::<E>());
     }
 
@@ -243,7 +255,7 @@ impl<E: Number> Room<E> {
                 E::parts_mut(std::slice::from_mut(&mut dual))[0].value = time::<E>(sight, p, later);
                 dual
             };
-            driver.ask(ask, &group.constants, dual_x, dual_u, time, results);
+            driver.ask(ask, &group.constants, [dual_x, dual_u, &self.dual_w], time, results);
             let kinds = [
                 (&mut self.pulled, n.x, 0..inputs),
                 (&mut self.along_u, n.u, inputs..theta),

@@ -13,6 +13,7 @@
 //! it on; real loops are solved in every sample by Newton's method, with exact derivatives.
 
 mod block;
+mod closed_loop;
 mod combine;
 mod compiled;
 mod driver;
@@ -26,6 +27,7 @@ mod number;
 mod order;
 mod program;
 mod rows;
+mod sampled;
 mod signal;
 mod solo;
 mod standalone;
@@ -33,9 +35,11 @@ mod structure;
 mod work;
 
 pub use block::{Baseline, Block, Learned};
+pub use closed_loop::{ClosedLoop, Controller};
 pub use error::LfrError;
 pub use interconnection::Interconnection;
 pub use matrix::{Entry, Matrix};
+pub use sampled::Sampled;
 pub use signal::{Sink, Source};
 pub use standalone::AugmentedModel;
 pub use structure::{Form, Scales, Structure};

@@ -12,13 +12,18 @@ pub(super) struct Known<'a, R> {
     pub sizes: Sizes,
     pub theta: &'a [R],
     pub derived: &'a [R],
+    /// How far the inputs move until the next sample; empty where they are held.
+    pub ramp: &'a [R],
 }
 
 impl<R: LaneNumber> Known<'_, R> {
-    /// One question, with nothing in the channels.
+    /// One question, with nothing in the channels but the ramp of a law that finds it there.
     pub fn ask(&self, ask: Ask, x: &[R], u: &[R], time: R, out: &mut [R]) {
-        let w = vec![R::constant(0.0); self.sizes.w];
-        let Self { law, sizes, theta, derived } = *self;
+        let mut w = vec![R::constant(0.0); self.sizes.w];
+        let Self { law, sizes, theta, derived, ramp } = *self;
+        if law.ramped() {
+            w[..ramp.len()].copy_from_slice(ramp);
+        }
         let question = Question { sizes, packs: 1, theta, derived, x, u, w: &w, time };
         law.answer(ask, R::call(&question, out));
     }
@@ -46,12 +51,17 @@ impl<R: LaneNumber> Room<R> {
         }
         self.x.copy_from_slice(x);
         let (h, tableau) = (pace.step(), pace.tableau());
+        let mut now_u = u.to_vec();
         for j in 0..pace.substeps() {
             self.sum.copy_from_slice(&self.x);
             self.trial.copy_from_slice(&self.x);
             for (i, stage) in tableau.iter().enumerate() {
-                let now = time + (j as f64 + stage.at) * h;
-                known.ask(Ask::Derivative, &self.trial, u, now, &mut self.k);
+                let at = j as f64 + stage.at;
+                let share = at / pace.substeps() as f64;
+                for ((now, &u), &du) in now_u.iter_mut().zip(u).zip(known.ramp) {
+                    *now = u + du * share;
+                }
+                known.ask(Ask::Derivative, &self.trial, &now_u, time + at * h, &mut self.k);
                 let further = tableau.get(i + 1).map_or(0.0, |next| h * next.from_before);
                 let (trial, sum) = (&mut self.trial, &mut self.sum);
                 combine::stage(trial, sum, &self.x, &self.k, further, h * stage.weight);

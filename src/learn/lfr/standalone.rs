@@ -54,8 +54,8 @@ impl AugmentedModel {
     ///
     /// # Errors
     ///
-    /// If the interconnection is wrong, or no model by itself: an algebraic loop, inputs
-    /// that move between samples, not exactly one baseline.
+    /// If the interconnection is wrong, or no model by itself: an algebraic loop, not exactly
+    /// one baseline.
     pub fn into_system(mut self) -> Result<System, LfrError> {
         self.of.check()?;
         for (number, block) in self.of.blocks.iter_mut().enumerate() {
@@ -103,7 +103,7 @@ impl AugmentedModel {
         let (Some(compiled), Some(baseline)) = (self.compiled(), self.baseline()) else {
             return out.fill(R::constant(f64::NAN));
         };
-        let (program, n) = (&compiled.program, question.sizes);
+        let (program, n, ramps) = (&compiled.program, question.sizes, self.ramped());
         let inner = baseline.sizes();
         let law: &dyn Law = baseline.system.model.as_ref();
         let nothing = vec![R::constant(0.0); inner.x.max(inner.u).max(inner.w)];
@@ -129,6 +129,7 @@ impl AugmentedModel {
             }
             let derived = &question.derived[pack * n.derived..][..n.derived];
             let x = &question.x[pack * n.x..][..n.x];
+            let ramp = if ramps { &question.w[pack * n.w..][..n.w] } else { &[] };
             if ask == Ask::Coordinates {
                 out.copy_from_slice(x);
                 continue;
@@ -155,14 +156,14 @@ impl AugmentedModel {
                     Op::Next(block) => {
                         let (z, w) = (program.blocks[*block].z, program.blocks[*block].w);
                         let z = rows[at(z)..][..inner.x + inner.u].to_vec();
-                        let known = solo::Known { law, sizes: inner, theta, derived };
+                        let known = solo::Known { law, sizes: inner, theta, derived, ramp };
                         let to = &mut rows[at(w)..][..inner.x];
                         room.next(&known, baseline.pace(), &z, question.time, to);
                     }
                     Op::Readout(block, outputs) => {
                         let (z, w) = (program.blocks[*block].z, program.blocks[*block].w);
                         let z = rows[at(z)..][..inner.x + inner.u].to_vec();
-                        let known = solo::Known { law, sizes: inner, theta, derived };
+                        let known = solo::Known { law, sizes: inner, theta, derived, ramp };
                         let mut y = vec![R::constant(0.0); inner.y];
                         known.ask(Ask::Output, &z[..inner.x], &z[inner.x..], question.time, &mut y);
                         for &output in outputs {
@@ -190,6 +191,10 @@ impl Law for AugmentedModel {
         signals.time = TimeKind::Discrete;
         // effects enter between samples, no longer inside the baseline's integrator
         (signals.channels, signals.coordinates) = (vec![], vec![]);
+        if self.ramped() {
+            let ramp = |input: &Signal| Signal::new(&format!("{}.ramp", input.name), &input.unit);
+            signals.channels = signals.inputs.iter().map(ramp).collect();
+        }
         let own = signals.states.len();
         let added = (own..self.of.states).map(|i| State {
             signal: Signal::new(&format!("xa{}", i + 1 - own), ""),
@@ -220,9 +225,6 @@ impl Law for AugmentedModel {
         if self.of.states < n.map_or(0, |n| n.x) {
             return vec![Fault::new("states", self.of.states, "at least the baseline's")];
         }
-        if self.baseline().is_some_and(Baseline::ramps) {
-            return vec![Fault::new("blocks", "a first-order hold", "inputs held between samples")];
-        }
         if let Some(path) = self.of.algebraic_loops().first() {
             let expected = "no loop without a state in it";
             return vec![Fault::new("s", format!("the loop {}", path.join(" -> ")), expected)];
@@ -241,6 +243,10 @@ impl Law for AugmentedModel {
             Call::Dual32(question, out) => self.reply(ask, question, out),
             Call::Trace(question, out) => self.reply(ask, question, out),
         }
+    }
+
+    fn ramped(&self) -> bool {
+        self.baseline().is_some_and(Baseline::ramps)
     }
 
     fn key(&self, parameter: &str) -> String {

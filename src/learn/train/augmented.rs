@@ -42,7 +42,7 @@ impl Augmented {
     pub fn new(model: Interconnection, encoder: Box<dyn Encoder>) -> Result<Self, TrainError> {
         let augmented = Self { model, encoder };
         augmented.model.check()?;
-        augmented.net()?;
+        augmented.pasts()?;
         Ok(augmented)
     }
 
@@ -63,33 +63,36 @@ impl Augmented {
         baseline.unwrap_or(1.0)
     }
 
-    /// The encoder's network, with what it looks at.
-    fn net(
-        &self,
-    ) -> Result<(&crate::network::ResNet, crate::network::Frame, Vec<Past>), TrainError> {
-        let net = self.encoder.network().ok_or(TrainError::NoNetwork)?;
-        let (scaling, window) =
-            (self.encoder.scaling().ok_or(TrainError::NoNetwork)?, self.encoder.window());
+    /// What the encoder looks at, once it is sure that it fits the model.
+    fn pasts(&self) -> Result<Vec<Past>, TrainError> {
+        let (shape, scaling) = match (self.encoder.shape(), self.encoder.scaling()) {
+            (Some(shape), Some(scaling)) => (shape, scaling),
+            _ => return Err(crate::encoder::EncoderError::NotReady.into()),
+        };
         let (n_y, n_u) = (scaling.outputs.len(), scaling.inputs.len());
         let checks = [
             ("outputs", self.model.outputs, n_y),
             ("inputs", self.model.inputs, n_u),
-            ("states", self.model.states, net.layout().outputs()),
+            ("states", self.model.states, shape.states()),
         ];
         for (what, expected, found) in checks {
             if expected != found {
                 return Err(TrainError::Shape { what, expected, found });
             }
         }
-        let places = window.places(n_y, n_u).into_iter();
-        let pasts = places.map(|p| Past { output: p.output, signal: p.signal, lag: p.lag });
-        Ok((net, scaling.frame(window), pasts.collect()))
+        let places = self.encoder.window().places(n_y, n_u).into_iter();
+        Ok(places.map(|p| Past { output: p.output, signal: p.signal, lag: p.lag }).collect())
     }
 
     /// The encoder prepared for one precision.
     pub(crate) fn guess<E: Number>(&self) -> Result<Guess<E>, TrainError> {
-        let (net, frame, pasts) = self.net()?;
-        Ok(Guess::new(net, frame, pasts))
+        let pasts = self.pasts()?;
+        Ok(match (self.encoder.network(), self.encoder.scaling()) {
+            (Some(net), Some(scaling)) => {
+                Guess::new(net, scaling.frame(self.encoder.window()), pasts)
+            }
+            _ => Guess::by_itself(self.encoder.copied(), self.model.states, pasts),
+        })
     }
 
     /// Everything that training changes: the model's parameters, then the encoder's weights.

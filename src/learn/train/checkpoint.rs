@@ -34,6 +34,9 @@ pub struct State {
     /// Epochs finished, steps taken in the present one.
     pub epoch: usize,
     pub step: usize,
+    /// Legs of the finish that are done.
+    #[serde(default)]
+    pub legs: usize,
     /// Parameters in the optimiser's units, and before the last step.
     pub theta: Vec<f64>,
     pub before: Vec<f64>,
@@ -46,6 +49,9 @@ pub struct State {
     pub rolled_back: usize,
     pub in_a_row: usize,
     pub rollbacks: usize,
+    /// Weights of the magnitudes of the entries of S.
+    #[serde(default)]
+    pub reweighted: Vec<f64>,
     pub history: Vec<Epoch>,
 }
 

@@ -11,6 +11,8 @@ pub(crate) struct Course<E> {
     pub y: Vec<Vec<E>>,
     /// Time of each sample since the beginning of its record, s.
     pub time: Vec<E>,
+    /// How much each sample of each output counts; absent: all alike.
+    pub counted: Option<Vec<Vec<f64>>>,
     /// Whether the next sample belongs to the same stretch.
     pub goes_on: Vec<bool>,
 }
@@ -24,6 +26,7 @@ impl<E: Number> Course<E> {
             u: vec![vec![]; inputs],
             y: vec![vec![]; outputs],
             time: vec![],
+            counted: None,
             goes_on: vec![],
         };
         for record in records {

@@ -19,9 +19,6 @@ pub enum TrainError {
     /// The optimiser is wrong.
     #[error(transparent)]
     Optimiser(#[from] OptimiseError),
-    /// An encoder that is no network, whose gradient the training step does not know.
-    #[error("the encoder has no network that could be trained")]
-    NoNetwork,
     /// Encoder and model disagree about a number of signals.
     #[error("the encoder deals with {found} {what}, the model with {expected}")]
     Shape {
@@ -125,7 +122,6 @@ impl Explain for TrainError {
                 Self::Model(error) => return error.hint(),
                 Self::Encoder(error) => return error.hint(),
                 Self::Optimiser(error) => return error.hint(),
-                Self::NoNetwork => "use a `resnet` or `linear` encoder",
                 Self::Shape { .. } => "prepare the encoder with the model's own scaling",
                 Self::NoSignal { .. } => "name the record's columns as the model names its signals",
                 Self::TooShort { .. } => {

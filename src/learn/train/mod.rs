@@ -5,28 +5,38 @@
 //! sections of one or several records, in batches, by Adam, and keeps the model that is best
 //! on records it does not learn from. [`MultipleShooting`] is loss and gradient alone.
 
+mod ablate;
 mod augmented;
 mod batch;
 mod checkpoint;
+mod counted;
 mod course;
 mod error;
 mod fit;
+mod groups;
 mod guess;
 mod recipe;
 mod run;
 mod scale;
 mod sections;
+mod settings;
 mod shooting;
+mod sparse;
 mod steps;
 mod trainer;
 mod validate;
+mod whole;
 
+pub use ablate::{Ablation, ablate, warnings};
 pub use augmented::{Augmented, Run};
 pub use checkpoint::Checkpoint;
 pub use error::TrainError;
 pub use fit::{Ended, Epoch, Fit, Follow};
+pub use groups::{Group, GroupKind};
 pub use recipe::Recipe;
+pub use settings::{Finish, Growing, Mask, Weights};
 pub use shooting::{Arithmetic, MultipleShooting, Shooting};
+pub use sparse::Sparse;
 pub use trainer::Trainer;
 pub use validate::{Score, Validation};
 

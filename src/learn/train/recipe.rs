@@ -7,7 +7,7 @@ use crate::encoder::{
     Baseline as Known, Encoder, EncoderInitialiser, Linearised, ResNetEncoder, Spread, Started,
     Window,
 };
-use crate::lfr::{Baseline, Scales, Structure};
+use crate::lfr::{Baseline, Sampled, Scales, Structure};
 use crate::system::System;
 
 use super::{Augmented, TrainError, Trainer};
@@ -80,6 +80,10 @@ impl Recipe {
         if reach >= record.len() {
             return Err(TrainError::TooShort { which: "training", length: 1, reach });
         }
+        let sampling_time = system
+            .sampling_time(Some(record.sampling_time))
+            .map_err(crate::encoder::EncoderError::from)?;
+        let system = &Sampled::where_needed(system, sampling_time)?;
         let known = Known::new(system, record)?.augmented(augmented_states);
         let mut encoder = self.encoder.clone();
         let started = self.initialiser.initialise(encoder.as_mut(), &known, seed)?;
@@ -91,9 +95,6 @@ impl Recipe {
             inputs: pairs(&scaling.inputs),
             outputs: pairs(&scaling.outputs),
         };
-        let sampling_time = system
-            .sampling_time(Some(record.sampling_time))
-            .map_err(crate::encoder::EncoderError::from)?;
         let baseline = Baseline {
             system: system.clone(),
             sampling_time,

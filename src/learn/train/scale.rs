@@ -2,6 +2,10 @@
 //! nominal values, which they may be drawn towards.
 
 use crate::lfr::{Block, Interconnection};
+use crate::optimise::Bounds;
+
+use super::groups::{Group, GroupKind};
+use super::sparse::{SMOOTH, Sparse};
 
 /// Unit, nominal value and bounds of every entry of the vector of parameters.
 #[derive(Debug, Clone)]
@@ -10,6 +14,12 @@ pub(crate) struct Units {
     /// Physical parameters: entry, nominal value, bounds, in the optimiser's unit.
     physical: Vec<(usize, f64, [f64; 2])>,
     penalty: f64,
+    /// Groups that are drawn to 0 together, with their weights.
+    groups: Vec<(Vec<usize>, f64)>,
+    /// Learned entries of S, with the weight of their magnitudes.
+    entries: Vec<(usize, f64)>,
+    /// Penalty on the magnitudes of the entries of S.
+    s: f64,
 }
 
 impl Units {
@@ -33,7 +43,47 @@ impl Units {
                 }
             }
         }
-        Self { unit, physical, penalty }
+        let first = model.count() - model.s.learned().count();
+        let entries = (first..model.count()).map(|at| (at, 1.0)).collect();
+        Self { unit, physical, penalty, groups: vec![], entries, s: 0.0 }
+    }
+
+    /// The same with groups of weights drawn to 0.
+    pub fn sparse(mut self, sparse: &Sparse, groups: &[Group]) -> Self {
+        let weight = |kind: GroupKind| match kind {
+            GroupKind::State => sparse.states,
+            GroupKind::Input => sparse.inputs,
+            GroupKind::Output => sparse.outputs,
+        };
+        let drawn = groups.iter().filter(|group| weight(group.kind) > 0.0);
+        let drawn = drawn.map(|group| {
+            let size = (group.entries.len() as f64).sqrt();
+            (group.entries.clone(), weight(group.kind) * size)
+        });
+        self.groups = drawn.collect();
+        self.s = sparse.s;
+        self
+    }
+
+    /// Weights for the magnitudes of the entries of S from their present values, 1 / (|s| + eps)
+    /// (Candes, Wakin, Boyd, J. Fourier Anal. Appl. 14, 2008).
+    pub fn reweighted(&self, theta: &[f64]) -> Vec<f64> {
+        self.entries.iter().map(|&(at, _)| 1.0 / (theta[at].abs() + 1e-2)).collect()
+    }
+
+    /// Takes over such weights.
+    pub fn reweight(&mut self, weights: &[f64]) {
+        self.entries.iter_mut().zip(weights).for_each(|(entry, &weight)| entry.1 = weight);
+    }
+
+    /// Smallest and largest value of every entry.
+    pub fn bounds(&self) -> Bounds {
+        let free = |value: f64| vec![value; self.unit.len()];
+        let (mut lower, mut upper) = (free(f64::NEG_INFINITY), free(f64::INFINITY));
+        for &(at, _, [min, max]) in &self.physical {
+            (lower[at], upper[at]) = (min, max);
+        }
+        Bounds { lower, upper }
     }
 
     /// From physical units to the optimiser's.
@@ -56,6 +106,19 @@ impl Units {
             let away = theta[at] - nominal;
             gradient[at] += self.penalty * away;
             sum += 0.5 * self.penalty * away * away;
+        }
+        for (entries, weight) in &self.groups {
+            let squares: f64 = entries.iter().map(|&at| theta[at] * theta[at]).sum();
+            let norm = (squares + SMOOTH * SMOOTH).sqrt();
+            sum += weight * (norm - SMOOTH);
+            entries.iter().for_each(|&at| gradient[at] += weight * theta[at] / norm);
+        }
+        if self.s > 0.0 {
+            for &(at, weight) in &self.entries {
+                let size = (theta[at] * theta[at] + SMOOTH * SMOOTH).sqrt();
+                sum += self.s * weight * (size - SMOOTH);
+                gradient[at] += self.s * weight * theta[at] / size;
+            }
         }
         sum
     }

@@ -71,9 +71,9 @@ impl<'a, E: Number> Sections<'a, E> {
 
     /// Takes over parameters: those of the model, then the encoder's weights.
     pub fn set(&mut self, parameters: &[f64]) {
-        let encoder = parameters.len() - self.guess.net.layout().len();
+        let encoder = parameters.len() - self.guess.len();
         self.engine.set(&parameters[..encoder]);
-        self.guess.net.set(&parameters[encoder..]);
+        self.guess.set(&parameters[encoder..]);
     }
 
     /// The loss over the sections that begin at `starts`, and its gradient if there is room
@@ -159,7 +159,7 @@ impl<'a, E: Number> Sections<'a, E> {
             self.block(course, own, thread, gradient.is_some(), tally);
         }
         if let Some(gradient) = gradient {
-            let encoder = gradient.len() - self.guess.net.layout().len();
+            let encoder = gradient.len() - self.guess.len();
             self.engine.unload(&mut thread.work, &mut gradient[..encoder]);
             self.guess.unload(&mut thread.guess, &mut gradient[encoder..]);
         }
@@ -185,6 +185,20 @@ impl<'a, E: Number> Sections<'a, E> {
         for t in 0..self.length {
             self.look(course, &at, starts.len(), work, t);
             self.engine.forward(work, t);
+            if let Some(counted) = &course.counted {
+                for o in 0..outputs {
+                    let i = t * outputs + o;
+                    let lanes = work.errors[i].lanes().iter().zip(work.measured[o].lanes());
+                    for ((error, measured), &k) in lanes.zip(starts) {
+                        let weight = counted[o][k + t];
+                        if !measured.wide().is_nan() {
+                            squares[i] += weight * error.wide() * error.wide();
+                            counts[i] += weight;
+                        }
+                    }
+                }
+                continue;
+            }
             for i in t * outputs..(t + 1) * outputs {
                 let lanes = work.errors[i].lanes()[..starts.len()].iter();
                 squares[i] += lanes.map(|e| e.wide() * e.wide()).sum::<f64>();
@@ -205,7 +219,17 @@ impl<'a, E: Number> Sections<'a, E> {
                 let weight = self.weights[o];
                 let error = work.errors[t * outputs + o];
                 let to = work.adjoints[row].lanes_mut().iter_mut();
-                to.zip(error.lanes()).for_each(|(to, e)| *to = E::of(weight * e.wide()));
+                match &course.counted {
+                    None => {
+                        to.zip(error.lanes()).for_each(|(to, e)| *to = E::of(weight * e.wide()))
+                    }
+                    Some(counted) => {
+                        let each = to.zip(error.lanes()).zip(&at);
+                        each.for_each(|((to, e), &k)| {
+                            *to = E::of(weight * counted[o][k + t] * e.wide());
+                        });
+                    }
+                }
             }
             self.engine.back(work, t);
         }

@@ -88,6 +88,23 @@ impl<'a> MultipleShooting<'a> {
         Ok(Self { kernel, starts, parameters: augmented.parameters().len() })
     }
 
+    /// Lets samples count as much as given, output by output over all records one after the
+    /// other; the loss is then a weighted mean.
+    pub(crate) fn count_by(&mut self, counted: Vec<Vec<f64>>) {
+        match &mut self.kernel {
+            Kernel::Double(_, course) => course.counted = Some(counted),
+            Kernel::Single(_, course) => course.counted = Some(counted),
+        }
+    }
+
+    /// Samples in a section from now on, at most as many as there is room for.
+    pub(crate) fn set_length(&mut self, length: usize) {
+        match &mut self.kernel {
+            Kernel::Double(sections, _) => sections.length = length,
+            Kernel::Single(sections, _) => sections.length = length,
+        }
+    }
+
     /// Every sample at which a section can begin, over all records one after the other.
     pub fn starts(&self) -> &[usize] {
         &self.starts

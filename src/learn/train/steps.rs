@@ -1,18 +1,24 @@
 //! A training, step by step.
 
 use crate::data::Record;
-use crate::optimise::AdamState;
+use crate::optimise::{AdamState, Named};
 
 use super::batch::{batches, shuffled};
 use super::checkpoint::State;
+use super::counted::counted;
 use super::fit::{Ended, Epoch, Fit, Follow};
 use super::scale::Units;
+use super::settings::Weights;
 use super::shooting::Shooting;
 use super::validate::Scorer;
+use super::whole::leg;
 use super::{Augmented, MultipleShooting, TrainError, Trainer};
 
 /// Steps taken back in a row after which it is over.
 const PATIENCE: usize = 20;
+
+/// Steps of an optimiser that is given all sections at once, in an epoch.
+const LEG: usize = 10;
 
 /// A run between two steps.
 pub(super) struct Steps<'a> {
@@ -37,16 +43,25 @@ impl<'a> Steps<'a> {
         validation: &'a [Record],
         fingerprint: u64,
     ) -> Result<Self, TrainError> {
-        let deviations = deviations(start, training)?;
+        let by = &trainer.weights;
+        let counts = match *by == Weights::default() {
+            true => None,
+            false => Some(counted(by, start, training)?),
+        };
+        let deviations = deviations(start, training, counts.as_deref())?;
         let variances: Vec<f64> = deviations.iter().map(|d| d * d).collect();
         let Trainer { length, threads, arithmetic, .. } = *trainer;
         let shooting = Shooting { length, threads, arithmetic };
-        let loss = MultipleShooting::new(start, training, shooting, &variances)?;
+        let mut loss = MultipleShooting::new(start, training, shooting, &variances)?;
+        if let Some(counts) = counts {
+            loss.count_by(counts);
+        }
         let scorer = match validation {
             [] => None,
             records => Some(Scorer::new(start, records, &trainer.validation, shooting)?),
         };
-        let units = Units::of(&start.model, start.encoder.weights().len(), trainer.penalty);
+        let mut units = Units::of(&start.model, start.encoder.weights().len(), trainer.penalty)
+            .sparse(&trainer.sparse, &start.groups());
         let known = match &trainer.checkpoint {
             Some(checkpoint) => State::read(&checkpoint.path, fingerprint)?,
             None => None,
@@ -57,6 +72,7 @@ impl<'a> Steps<'a> {
             fingerprint,
             epoch: 0,
             step: 0,
+            legs: 0,
             before: theta.clone(),
             adam: AdamState::new(theta.len()),
             theta,
@@ -65,9 +81,11 @@ impl<'a> Steps<'a> {
             rolled_back: 0,
             in_a_row: 0,
             rollbacks: 0,
+            reweighted: vec![],
             history: vec![],
         };
         let state = known.unwrap_or(fresh);
+        units.reweight(&state.reweighted);
         Ok(Self { trainer, start, loss, scorer, units, deviations, state, resumed, unsaved: 0 })
     }
 
@@ -83,6 +101,15 @@ impl<'a> Steps<'a> {
             if self.out_of_patience() {
                 ended = Ended::Patience;
                 break;
+            }
+            if let Some(growing) = self.trainer.growing {
+                self.loss.set_length(growing.length(self.trainer.length, self.state.epoch));
+            }
+            if !self.trainer.optimiser.steps_by_batch() {
+                if self.leg(follow, &self.trainer.optimiser, LEG)? {
+                    return self.end(Ended::Asked);
+                }
+                continue;
             }
             let order = shuffled(self.loss.starts(), self.trainer.seed, self.state.epoch);
             let parts = batches(&order, self.trainer.batch);
@@ -103,7 +130,50 @@ impl<'a> Steps<'a> {
                 return self.end(Ended::Asked);
             }
         }
+        self.loss.set_length(self.trainer.length);
+        if let Some(finish) = &self.trainer.finish {
+            while self.state.legs < finish.legs {
+                if self.state.legs == 0 {
+                    self.begin_finish();
+                }
+                if self.leg(follow, &finish.optimiser, finish.steps)? {
+                    return self.end(Ended::Asked);
+                }
+            }
+        }
         self.end(ended)
+    }
+
+    /// A finish begins from the best model so far.
+    fn begin_finish(&mut self) {
+        if let Some((_, best, _)) = &self.state.best {
+            self.state.theta.clone_from(best);
+        }
+    }
+
+    /// An epoch by an optimiser that is given all sections at once; whether somebody asked for
+    /// the end. What is broken off counts for nothing: it is done again when the run goes on.
+    fn leg(
+        &mut self,
+        follow: &mut dyn Follow,
+        optimiser: &Named,
+        steps: usize,
+    ) -> Result<bool, TrainError> {
+        let finishing = self.state.epoch >= self.trainer.epochs;
+        let mut stopped = |done: usize, of: usize| follow.on_step(done, of);
+        let state = &mut self.state;
+        let done =
+            leg(&**optimiser, steps, &mut self.loss, &self.units, &mut state.theta, &mut stopped)?;
+        if done.asked {
+            self.save(true)?;
+            return Ok(true);
+        }
+        self.units.project(&mut state.theta);
+        (state.epoch, state.step, state.loss) = (state.epoch + 1, 0, 0.0);
+        state.legs += usize::from(finishing);
+        self.close(self.state.epoch, Some(done.loss))?;
+        self.save(true)?;
+        Ok(self.tell(follow))
     }
 
     /// One step, or one step back where the last one led to no finite loss.
@@ -115,7 +185,8 @@ impl<'a> Steps<'a> {
         let loss = outcome.loss + self.units.penalise(&state.theta, &mut gradient);
         if loss.is_finite() && gradient.iter().all(|g| g.is_finite()) {
             state.before.copy_from_slice(&state.theta);
-            self.trainer.optimiser.step(&mut state.adam, &mut state.theta, &gradient)?;
+            let optimiser = &self.trainer.optimiser;
+            optimiser.batch_step(&mut state.adam, &mut state.theta, &gradient)?;
             self.units.project(&mut state.theta);
             state.in_a_row = 0;
             state.loss += loss;
@@ -145,7 +216,7 @@ impl<'a> Steps<'a> {
     /// Writes an epoch into the history, with its score where it is due.
     fn close(&mut self, epoch: usize, loss: Option<f64>) -> Result<(), TrainError> {
         let due =
-            epoch.is_multiple_of(self.trainer.validation.every) || epoch == self.trainer.epochs;
+            epoch.is_multiple_of(self.trainer.validation.every) || epoch >= self.trainer.epochs;
         let parameters = self.units.leave(&self.state.theta);
         let score = match &mut self.scorer {
             Some(scorer) if due => Some(scorer.score(&parameters)?),
@@ -158,9 +229,11 @@ impl<'a> Steps<'a> {
         if let (true, Some(whole)) = (best, whole) {
             self.state.best = Some((whole, self.state.theta.clone(), epoch));
         }
-        let adam = &self.trainer.optimiser;
-        let rate =
-            adam.rate * adam.schedule.factor(self.state.adam.step.max(1)) * self.state.adam.slowed;
+        let rate = self.trainer.optimiser.batch_rate(&self.state.adam);
+        if self.trainer.sparse.s > 0.0 && epoch > 0 && epoch % self.trainer.sparse.reweight == 0 {
+            self.state.reweighted = self.units.reweighted(&self.state.theta);
+            self.units.reweight(&self.state.reweighted);
+        }
         // what is not finite has no place in a file
         let score =
             score.filter(|s| s.ahead.iter().flatten().chain(&s.simulation).all(|e| e.is_finite()));
@@ -205,13 +278,22 @@ impl<'a> Steps<'a> {
     }
 }
 
-/// Standard deviation of each output over all records; 1 where that is 0.
-fn deviations(model: &Augmented, records: &[Record]) -> Result<Vec<f64>, TrainError> {
+/// Standard deviation of each output over all records, without what does not count; 1 where that
+/// is 0.
+fn deviations(
+    model: &Augmented,
+    records: &[Record],
+    counts: Option<&[Vec<f64>]>,
+) -> Result<Vec<f64>, TrainError> {
     let mut values = vec![vec![]; model.model.outputs];
     for (i, record) in records.iter().enumerate() {
         for (all, own) in values.iter_mut().zip(model.series(record, i + 1)?.y) {
             all.extend_from_slice(own);
         }
+    }
+    for (values, counts) in values.iter_mut().zip(counts.unwrap_or_default()) {
+        let masked = values.iter_mut().zip(counts).filter(|(_, count)| **count == 0.0);
+        masked.for_each(|(value, _)| *value = f64::NAN);
     }
     let deviation = |values: &Vec<f64>| crate::encoder::Spread::of(values).scale;
     Ok(values.iter().map(deviation).collect())

@@ -3,11 +3,13 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::Record;
-use crate::optimise::Adam;
+use crate::optimise::Named;
 
 use super::checkpoint::{Checkpoint, Fingerprint};
 use super::fit::{Fit, Follow};
+use super::settings::{Finish, Growing, Weights};
 use super::shooting::Arithmetic;
+use super::sparse::Sparse;
 use super::steps::Steps;
 use super::validate::Validation;
 use super::{Augmented, TrainError};
@@ -29,8 +31,10 @@ pub struct Trainer {
     pub epochs: usize,
     /// Decides the order of the sections.
     pub seed: u64,
-    /// Step rule, with its rate, schedule, clipping and decay.
-    pub optimiser: Adam,
+    /// Step rule, with its rate, schedule, clipping and decay: the bare settings of Adam, or a
+    /// table of any optimiser's name. One without a step for a batch is given all sections at
+    /// once, an epoch being ten steps of it.
+    pub optimiser: Named,
     /// Arithmetic of loss and gradient.
     pub arithmetic: Arithmetic,
     /// Threads.
@@ -43,6 +47,16 @@ pub struct Trainer {
     /// Weight of the squared relative distance of free baseline parameters from their nominal
     /// values.
     pub penalty: f64,
+    /// How much records and outputs count.
+    pub weights: Weights,
+    /// Sections that grow to their length; absent: they have it from the beginning.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub growing: Option<Growing>,
+    /// Another optimiser on all sections at once, after the epochs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub finish: Option<Finish>,
+    /// Penalties under which signals of the learned part vanish.
+    pub sparse: Sparse,
     /// Where progress is written down.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checkpoint: Option<Checkpoint>,
@@ -55,12 +69,16 @@ impl Default for Trainer {
             batch: 3000,
             epochs: 2000,
             seed: 0,
-            optimiser: Adam::default(),
+            optimiser: Named::default(),
             arithmetic: Arithmetic::Double,
             threads: 1,
             validation: Validation::default(),
             patience: None,
             penalty: 1.0,
+            weights: Weights::default(),
+            growing: None,
+            finish: None,
+            sparse: Sparse::default(),
             checkpoint: None,
         }
     }
@@ -78,6 +96,9 @@ impl Trainer {
             ("batch", self.batch),
             ("threads", self.threads),
             ("validation.every", self.validation.every),
+            ("growing.from", self.growing.map_or(1, |growing| growing.from)),
+            ("finish.steps", self.finish.as_ref().map_or(1, |finish| finish.steps)),
+            ("sparse.reweight", self.sparse.reweight),
             ("checkpoint.every", self.checkpoint.as_ref().map_or(1, |c| c.every)),
         ];
         for (name, value) in least {
@@ -89,11 +110,26 @@ impl Trainer {
                 });
             }
         }
-        if !(self.penalty >= 0.0 && self.penalty.is_finite()) {
-            let (found, expected) = (self.penalty.to_string(), "a finite number of at least 0");
-            return Err(TrainError::Setting { name: "penalty", found, expected });
+        let Sparse { states, inputs, outputs, s, .. } = self.sparse;
+        let records = self.weights.records.iter().map(|&weight| ("weights.records", weight));
+        let by_output = self.weights.outputs.values().map(|&weight| ("weights.outputs", weight));
+        let penalties = [
+            ("penalty", self.penalty),
+            ("sparse.states", states),
+            ("sparse.inputs", inputs),
+            ("sparse.outputs", outputs),
+            ("sparse.s", s),
+        ];
+        for (name, value) in penalties.into_iter().chain(records).chain(by_output) {
+            if !(value >= 0.0 && value.is_finite()) {
+                let (found, expected) = (value.to_string(), "a finite number of at least 0");
+                return Err(TrainError::Setting { name, found, expected });
+            }
         }
-        Ok(self.optimiser.check()?)
+        if let Some(finish) = &self.finish {
+            finish.optimiser.validate()?;
+        }
+        Ok(self.optimiser.validate()?)
     }
 
     /// Trains a model on some records and keeps the one that is best on others; goes on from
@@ -114,6 +150,11 @@ impl Trainer {
         let print = self.fingerprint(start, training, validation)?;
         let steps = Steps::new(self, start, training, validation, print)?;
         steps.go(follow)
+    }
+
+    /// Epochs in all, legs of the finish among them.
+    pub fn all_epochs(&self) -> usize {
+        self.epochs + self.finish.as_ref().map_or(0, |finish| finish.legs)
     }
 
     /// Everything that decides how a run goes on; more epochs or other threads do not.

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
 
-use super::{EncoderInitialiser, Found, set_linear, started};
+use super::{EncoderInitialiser, Found, as_it_is, set_linear, started};
 use crate::encoder::baseline::Examples;
 use crate::encoder::{Baseline, Encoder, EncoderError, LinearMap, Outputs, Started};
 
@@ -127,7 +127,9 @@ impl EncoderInitialiser for LeastSquares {
         seed: u64,
     ) -> Result<Started, EncoderError> {
         let initialiser = "least_squares";
-        baseline.prepare(encoder, seed)?;
+        if let Some(started) = as_it_is(initialiser, encoder, baseline, seed)? {
+            return Ok(started);
+        }
         let examples = baseline.examples(encoder.window(), self.outputs)?;
         let solved = solve(&examples);
         set_linear(initialiser, encoder, &solved.map)?;

@@ -69,6 +69,22 @@ fn started(
     Ok(Started { initialiser, rank, condition, states, measured, optimised, notes })
 }
 
+/// Prepares an encoder and, where that has no weights (an extrapolation, an observer of one's
+/// own), scores it as it is: there is nothing to start.
+fn as_it_is(
+    initialiser: &'static str,
+    encoder: &mut dyn Encoder,
+    baseline: &Baseline<'_>,
+    seed: u64,
+) -> Result<Option<Started>, EncoderError> {
+    baseline.prepare(encoder, seed)?;
+    if !encoder.weights().is_empty() {
+        return Ok(None);
+    }
+    let notes = vec!["the encoder has no weights: it is used as it is".into()];
+    started(initialiser, encoder, baseline, Found { notes, ..Found::default() }, None).map(Some)
+}
+
 /// Sets the linear part, naming the method if there is none.
 fn set_linear(
     initialiser: &'static str,

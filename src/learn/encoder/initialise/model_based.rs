@@ -3,9 +3,9 @@
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-use super::{EncoderInitialiser, Found, set_linear, started};
+use super::{EncoderInitialiser, Found, as_it_is, set_linear, started};
+use crate::encoder::sampled::Lead;
 use crate::encoder::{Baseline, Encoder, EncoderError, Reconstruction, SampledLinear, Started};
-use crate::system::Hold;
 
 /// The reconstructability map of a linear baseline, eq. `final_noiseless`.
 ///
@@ -57,6 +57,21 @@ pub enum About {
     },
 }
 
+/// An encoder without weights, as it is. One that cannot even be prepared is left to the method,
+/// which says better why.
+fn without_weights(
+    initialiser: &'static str,
+    encoder: &mut dyn Encoder,
+    baseline: &Baseline<'_>,
+    seed: u64,
+) -> Result<Option<Started>, EncoderError> {
+    let window = encoder.window();
+    if window.rows(1, 1) == 0 {
+        return Ok(None);
+    }
+    as_it_is(initialiser, encoder, baseline, seed)
+}
+
 /// A gain of the right size.
 fn gain(rows: &[Vec<f64>], states: usize, outputs: usize) -> Result<DMatrix<f64>, EncoderError> {
     let count = |what, expected, found| EncoderError::Count { what, expected, found };
@@ -72,13 +87,7 @@ fn gain(rows: &[Vec<f64>], states: usize, outputs: usize) -> Result<DMatrix<f64>
 }
 
 /// The linear baseline of the first two methods.
-fn linear(
-    initialiser: &'static str,
-    baseline: &Baseline<'_>,
-) -> Result<SampledLinear, EncoderError> {
-    if baseline.plan().hold != Hold::Zero {
-        return Err(EncoderError::Hold { initialiser });
-    }
+fn linear(initialiser: &'static str, baseline: &Baseline<'_>) -> Result<Lead, EncoderError> {
     SampledLinear::exactly(baseline.system, baseline.plan()).ok_or_else(|| {
         let model = baseline.system.model.typetag_name().to_string();
         EncoderError::NotLinear { initialiser, model }
@@ -88,7 +97,7 @@ fn linear(
 /// Sets an encoder's linear part to the map of a linear system.
 fn apply(
     initialiser: &'static str,
-    system: &SampledLinear,
+    lead: &Lead,
     encoder: &mut dyn Encoder,
     baseline: &Baseline<'_>,
     seed: u64,
@@ -98,7 +107,18 @@ fn apply(
     if window.rows(1, 1) == 0 {
         return Err(EncoderError::EmptyWindow { n_a: window.n_a, n_b: window.n_b });
     }
-    let found = Reconstruction::of(system, window, &names.collect::<Vec<_>>())?;
+    // states of effects carry a dot in their names (`lfr::Sampled`)
+    let names: Vec<String> = names.collect();
+    let of_effect = |state: usize| names.get(state).is_some_and(|name| name.contains('.'));
+    let (mut found, rest) = Reconstruction::resting(&lead.system, window, &names, of_effect)?;
+    if let Some(ahead) = &lead.ahead {
+        // x_k = xi_k + B1 u_k; without the current sample the newest input stands for it
+        let newest = window.outputs() * lead.system.c.nrows();
+        if window.inputs() > 0 {
+            let mut columns = found.map.weights.columns_mut(newest, ahead.ncols());
+            columns += ahead;
+        }
+    }
     baseline.prepare(encoder, seed)?;
     set_linear(initialiser, encoder, &found.map)?;
     let mut notes = vec![];
@@ -114,6 +134,10 @@ fn apply(
     if nu > 0 && window.n_a != window.n_b {
         let used = window.n_a.min(window.n_b);
         notes.push(format!("samples further back than {used} have weight 0 at first"));
+    }
+    if !rest.is_empty() {
+        let rest: Vec<&str> = rest.iter().map(|&state| &names[state][..]).collect();
+        notes.push(format!("taken to be at rest, as no output shows them: {}", rest.join(", ")));
     }
     if baseline.plan().states > 0 {
         notes.push("states of effects are taken to be at rest".into());
@@ -131,9 +155,12 @@ impl EncoderInitialiser for Reconstruct {
         baseline: &Baseline<'_>,
         seed: u64,
     ) -> Result<Started, EncoderError> {
-        let mut system = linear("reconstruct", baseline)?;
-        system.k = None;
-        apply("reconstruct", &system, encoder, baseline, seed)
+        if let Some(started) = without_weights("reconstruct", encoder, baseline, seed)? {
+            return Ok(started);
+        }
+        let mut lead = linear("reconstruct", baseline)?;
+        lead.system.k = None;
+        apply("reconstruct", &lead, encoder, baseline, seed)
     }
 }
 
@@ -146,7 +173,11 @@ impl EncoderInitialiser for Innovation {
         seed: u64,
     ) -> Result<Started, EncoderError> {
         let initialiser = "innovation";
-        let mut system = linear(initialiser, baseline)?;
+        if let Some(started) = without_weights(initialiser, encoder, baseline, seed)? {
+            return Ok(started);
+        }
+        let mut lead = linear(initialiser, baseline)?;
+        let system = &mut lead.system;
         if let Some(rows) = &self.gain {
             system.k = Some(gain(rows, system.a.nrows(), system.c.nrows())?);
         }
@@ -154,7 +185,7 @@ impl EncoderInitialiser for Innovation {
             let model = baseline.system.model.typetag_name().to_string();
             return Err(EncoderError::NoGain { initialiser, model });
         }
-        apply(initialiser, &system, encoder, baseline, seed)
+        apply(initialiser, &lead, encoder, baseline, seed)
     }
 }
 
@@ -166,6 +197,9 @@ impl EncoderInitialiser for Linearised {
         baseline: &Baseline<'_>,
         seed: u64,
     ) -> Result<Started, EncoderError> {
+        if let Some(started) = without_weights("linearised", encoder, baseline, seed)? {
+            return Ok(started);
+        }
         // sizes of the differences that a system with effects needs
         let mut scales = vec![];
         if !baseline.system.effects.is_empty() {
@@ -173,12 +207,13 @@ impl EncoderInitialiser for Linearised {
             let states = scaling.states.iter().take(baseline.shape().baseline_states);
             scales = states.chain(&scaling.inputs).map(|s| s.scale).collect();
         }
-        let mut system =
+        let mut lead =
             SampledLinear::of_plan(baseline.system, baseline.plan(), &self.about, &scales)?;
+        let system = &mut lead.system;
         system.k = match &self.gain {
             Some(rows) => Some(gain(rows, system.a.nrows(), system.c.nrows())?),
             None => None,
         };
-        apply("linearised", &system, encoder, baseline, seed)
+        apply("linearised", &lead, encoder, baseline, seed)
     }
 }

@@ -3,25 +3,28 @@
 use serde::{Deserialize, Serialize};
 
 use super::least_squares::solve;
-use super::{EncoderInitialiser, Found, set_linear, started};
+use super::{EncoderInitialiser, Found, as_it_is, set_linear, started};
 use crate::encoder::baseline::Examples;
 use crate::encoder::batch::{Batch, Targets};
 use crate::encoder::{Baseline, Encoder, EncoderError, Outputs, Started};
 use crate::network::{Frame, Precision, ResNet};
-use crate::optimise::{Adam, Lbfgs, Objective, Optimiser, Stop};
+use crate::optimise::{Adam, Lbfgs, Named, Objective, Optimiser, Stop};
 
 /// Lowers V_enc, the mean squared distance between the encoder's states and the baseline's,
 /// each over its standard deviation: a few steps of Adam, then L-BFGS.
 ///
 /// From random weights, 50 steps and memory 50, as in the paper's table; 250 steps of L-BFGS
 /// where that has 200.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Prefit {
     /// Outputs in the windows.
     pub outputs: Outputs,
     /// Where the network starts from.
     pub start: PrefitStart,
+    /// An optimiser in the place of both below, by its own settings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub optimiser: Option<Named>,
     /// Steps of Adam; 0 for none.
     pub adam_steps: usize,
     /// Their size.
@@ -40,6 +43,7 @@ impl Default for Prefit {
         Self {
             outputs: Outputs::default(),
             start: PrefitStart::default(),
+            optimiser: None,
             adam_steps: 50,
             adam_rate: 1e-2,
             lbfgs_steps: 250,
@@ -136,6 +140,10 @@ impl Prefit {
         weights: &mut [f64],
         found: &mut Found,
     ) -> Result<(), EncoderError> {
+        if let Some(optimiser) = &self.optimiser {
+            found.optimised.push(optimiser.minimise(objective, weights, &mut ())?);
+            return Ok(());
+        }
         if self.adam_steps > 0 {
             let stop = Stop::after(self.adam_steps);
             let adam = Adam { rate: self.adam_rate, stop, ..Adam::default() };
@@ -159,7 +167,9 @@ impl EncoderInitialiser for Prefit {
         baseline: &Baseline<'_>,
         seed: u64,
     ) -> Result<Started, EncoderError> {
-        baseline.prepare(encoder, seed)?;
+        if let Some(started) = as_it_is("prefit", encoder, baseline, seed)? {
+            return Ok(started);
+        }
         let window = encoder.window();
         let examples = baseline.examples(window, self.outputs)?;
         let mut found = Found::default();

@@ -1,0 +1,138 @@
+//! What every part of a fitted model is worth: the error without it over the error with it.
+
+use serde::Serialize;
+
+use super::fit::Fit;
+use super::groups::{Group, GroupKind, groups};
+use super::shooting::{Arithmetic, Shooting};
+use super::validate::{Scorer, Validation};
+use super::{Augmented, TrainError};
+use crate::data::Record;
+
+/// A part whose absence leaves the error within this share of what it was is not needed: one
+/// standard error of a root mean square over some five thousand independent samples.
+const NOT_NEEDED: f64 = 1.01;
+
+/// One part switched off.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Ablation {
+    /// What it is.
+    pub kind: GroupKind,
+    /// Name of the signal.
+    pub name: String,
+    /// Error on the validation records without it, over that with it.
+    pub ratio: f64,
+    /// Whether it has been taken out.
+    pub removed: bool,
+}
+
+impl std::fmt::Display for Ablation {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { name, ratio, .. } = self;
+        let what = match self.kind {
+            GroupKind::State => format!("The added state `{name}`"),
+            GroupKind::Input => format!("`{name}` as what the learned part sees"),
+            GroupKind::Output => format!("What the learned part adds to `{name}`"),
+        };
+        match (self.removed, ratio.is_finite()) {
+            (true, _) => write!(f, "{what} is not needed and was taken out"),
+            (_, false) => write!(f, "{what} is needed: without it the simulation diverges"),
+            (_, true) => write!(f, "{what}: without it the error is {ratio:.2} times as large"),
+        }
+    }
+}
+
+/// Switches every signal of the learned part off in turn: an input is held at its mean over the
+/// training records, an output and an added state are 0 (Breiman, Machine Learning 45, 2001, sec.
+/// 10, with the part removed instead of shuffled). With `prune`, what is not needed is taken out
+/// of the model for good, the least needed first, each judged without those before it (backward
+/// elimination).
+///
+/// # Errors
+///
+/// If the records do not fit the model.
+pub fn ablate(fit: &mut Fit, records: &[Record], prune: bool) -> Result<Vec<Ablation>, TrainError> {
+    let model = fit.model.clone();
+    let all = groups(&model.model, model.signals().as_ref());
+    let settings = Validation { lengths: vec![1], ..Validation::default() };
+    let shooting = Shooting { length: 1, threads: 1, arithmetic: Arithmetic::Double };
+    let mut scorer = Scorer::new(&model, records, &settings, shooting)?;
+    let ones = vec![1.0; model.model.outputs];
+    let mut error = |parameters: &[f64]| -> Result<f64, TrainError> {
+        Ok(scorer.score(parameters)?.whole(&ones))
+    };
+    let mut present = model.parameters();
+    let mut whole = error(&present)?;
+    let mut found: Vec<Ablation> = vec![];
+    for group in &all {
+        let ratio = error(&without(&present, group))? / whole;
+        found.push(Ablation { kind: group.kind, name: group.name.clone(), ratio, removed: false });
+    }
+    while prune {
+        let mut least: Option<(usize, f64)> = None;
+        for (i, group) in all.iter().enumerate().filter(|(i, _)| !found[*i].removed) {
+            let there = group.entries.iter().any(|&entry| present[entry] != 0.0);
+            let ratio = error(&without(&present, group))? / whole;
+            if there && ratio <= NOT_NEEDED && least.is_none_or(|(_, best)| ratio < best) {
+                least = Some((i, ratio));
+            }
+        }
+        let Some((i, _)) = least else { break };
+        found[i].removed = true;
+        present = without(&present, &all[i]);
+        whole = error(&present)?.max(f64::MIN_POSITIVE);
+    }
+    if prune {
+        fit.model.set_parameters(&present)?;
+    }
+    Ok(found)
+}
+
+fn without(parameters: &[f64], group: &Group) -> Vec<f64> {
+    let mut changed = parameters.to_vec();
+    group.entries.iter().for_each(|&entry| changed[entry] = 0.0);
+    changed
+}
+
+/// What the course of a training gives reason to say: the best model is the start, or errors a
+/// few samples ahead fall while those of the simulation rise.
+pub fn warnings(fit: &Fit) -> Vec<String> {
+    let mut said = vec![];
+    if fit.epoch == 0 && fit.history.len() > 1 {
+        said.push(
+            "the best model is the one before training: no epoch was better on the validation \
+             records; lower the rate, lengthen the sections or check the records"
+                .to_string(),
+        );
+    }
+    let mean = |errors: &[f64]| {
+        (errors.iter().map(|e| e * e).sum::<f64>() / errors.len().max(1) as f64).sqrt()
+    };
+    let scored = fit.history.iter().filter_map(|epoch| {
+        let score = epoch.score.as_ref()?;
+        let ahead = score.ahead.first().map(|ahead| mean(ahead))?;
+        (!score.simulation.is_empty()).then(|| (epoch.epoch, ahead, mean(&score.simulation)))
+    });
+    let scored: Vec<(usize, f64, f64)> = scored.collect();
+    let best = scored.iter().copied().min_by(|a, b| a.2.total_cmp(&b.2));
+    if let (Some(best), Some(last)) = (best, scored.last()) {
+        if last.1 < best.1 && last.2 > 1.1 * best.2 {
+            said.push(format!(
+                "after epoch {} errors a few samples ahead fell by {:.0} % while those of the \
+                 simulation rose by {:.0} %: the sections are shorter than what the model \
+                 remembers",
+                best.0,
+                100.0 * (1.0 - last.1 / best.1),
+                100.0 * (last.2 / best.2 - 1.0)
+            ));
+        }
+    }
+    said
+}
+
+impl Augmented {
+    /// Groups of parameters, one per signal of the learned part.
+    pub fn groups(&self) -> Vec<Group> {
+        groups(&self.model, self.signals().as_ref())
+    }
+}
