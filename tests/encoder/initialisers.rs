@@ -209,8 +209,9 @@ fn what_a_method_cannot_do_it_says() {
     let mut along = sampled(duffing(100.0));
     along.sampling.hold = Hold::First;
     let line = Baseline::new(&along, &record).unwrap();
-    let error = Linearised::default().initialise(&mut encoder, &line, 0).unwrap_err();
-    assert!(matches!(error, EncoderError::Hold { .. }), "{error}");
+    // a first-order hold is no hindrance
+    let started = Linearised::default().initialise(&mut encoder, &line, 0).unwrap();
+    assert!(started.states.iter().all(|state| state.nrmse.is_finite()), "{started}");
 
     let two = driven(2, 300, 1.0, 0.0);
     let plain = discrete(lti(false));

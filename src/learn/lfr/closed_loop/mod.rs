@@ -201,6 +201,7 @@ impl Law for ClosedLoop {
             Call::F32(block, out) => self.reply(ask, block, out),
             Call::Dual64(block, out) => self.reply(ask, block, out),
             Call::Dual32(block, out) => self.reply(ask, block, out),
+            Call::Trace(block, out) => self.reply(ask, block, out),
         }
     }
 

@@ -150,6 +150,7 @@ impl Law for Sampled {
             Call::F32(block, out) => self.reply(ask, block, out),
             Call::Dual64(block, out) => self.reply(ask, block, out),
             Call::Dual32(block, out) => self.reply(ask, block, out),
+            Call::Trace(block, out) => self.reply(ask, block, out),
         }
     }
 
