@@ -279,8 +279,7 @@ impl Shape for WrittenEffect {
     }
 }
 
-/// By hand, as its name is not that of its type. What a file holds under that name is read
-/// by [`file`](crate::file), which knows the definition.
+/// By hand, as its name is not that of its type; [`file`](crate::file) reads its entries.
 impl CandidateEffect for WrittenEffect {
     fn typetag_name(&self) -> &'static str {
         self.name
