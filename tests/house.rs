@@ -4,6 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
+mod circles;
+
 /// Files of one concept that needs more than 300 lines; 450 are the limit.
 const LONGER: [&str; 13] = [
     "src/core/effect/written.rs",
@@ -85,15 +87,27 @@ fn room(path: &Path) -> String {
     room.file_stem().unwrap().to_str().unwrap().into()
 }
 
-/// The code of a file: without comments, texts in quotes and tests.
+/// The code of a file: without comments, texts in quotes and items of tests.
 fn code(path: &Path) -> String {
-    let mut code = String::new();
-    for line in text(path).lines() {
+    without_tests(&text(path))
+}
+
+fn without_tests(text: &str) -> String {
+    let (mut code, mut depth, mut in_test) = (String::new(), 0_i32, false);
+    for line in text.lines() {
         if line.trim() == "#[cfg(test)]" {
-            break;
+            (in_test, depth) = (true, 0);
+            continue;
         }
         let line = line.split("//").next().unwrap();
         let quoted = line.split('"').step_by(2).collect::<Vec<_>>().join("\"\"");
+        if in_test {
+            let count = |c: char| quoted.matches(c).count() as i32;
+            depth += count('{') - count('}');
+            let ends = quoted.trim_end().ends_with([';', '}']);
+            in_test = depth > 0 || !ends;
+            continue;
+        }
         code += &quoted;
         code.push('\n');
     }
@@ -152,6 +166,12 @@ fn paths_are_read_as_the_compiler_reads_them() {
 }
 
 #[test]
+fn items_of_tests_are_left_out_and_nothing_behind_them() {
+    let text = "use a;\n#[cfg(test)]\nmod tests {\n    use b;\n}\n#[cfg(test)]\nmod more;\nuse c;\n";
+    assert_eq!(without_tests(text), "use a;\nuse c;\n");
+}
+
+#[test]
 fn every_room_stands_in_the_tour() {
     let known: BTreeSet<String> = rooms().into_iter().map(|(name, _)| name).collect();
     let found: BTreeSet<String> =
@@ -179,7 +199,7 @@ fn sources_keep_to_the_table() {
     // macros and the number types' own helpers are exported at the root
     let everywhere = ["__private"];
     let macros = ["per_lanes", "per_isa"];
-    let mut wrong = vec![];
+    let (mut wrong, mut needed) = (vec![], BTreeMap::<String, BTreeSet<String>>::new());
     for path in files("src", &["rs"]).iter().filter(|path| !is_test(path)) {
         let own = room(path);
         if own == "lib" {
@@ -193,12 +213,18 @@ fn sources_keep_to_the_table() {
                 || everywhere.contains(&name.as_str())
                 || macros.contains(&name.as_str())
                 || allowed[&own].contains(&name);
+            needed.entry(own.clone()).or_default().insert(name.clone());
             if !fine {
                 wrong.push(format!("{}: `{own}` uses `{name}`", path.display()));
             }
         }
     }
     assert!(wrong.is_empty(), "against the table in docs/tour.md:\n{}", wrong.join("\n"));
+    for (room, allowed) in allowed {
+        let needed = needed.remove(&room).unwrap_or_default();
+        let spare: Vec<_> = allowed.difference(&needed).collect();
+        assert!(spare.is_empty(), "`{room}` may use {spare:?}, and does not");
+    }
 }
 
 #[test]
