@@ -14,7 +14,7 @@ use super::sets::{AS_GOOD, headed_by};
 use super::sketch::Drawing;
 use super::stage::{REFITTED, Trial, stage, trial};
 use super::surface::{NAME, Surface};
-use super::train::start;
+use super::network_start::start;
 use crate::statistics::corrected_score;
 
 /// Laws that are trained, how many steps before the best of them is known, and the seeds of its

@@ -86,7 +86,7 @@ mod teller;
 mod tensor;
 mod together;
 mod track;
-mod train;
+mod network_start;
 mod withdrawn;
 
 pub use crate::watch::Watch;

@@ -9,7 +9,7 @@ use super::finished::Finished;
 use super::nominal::Nominal;
 use super::problem::{Added, Grain, Model, Problem};
 use super::teller::Teller;
-use super::train::value;
+use super::network_start::value;
 use crate::digits::number;
 use crate::effect::View;
 use crate::plugins::effects::network::Network;

@@ -6,6 +6,7 @@
 
 mod card;
 mod curve;
+mod declare;
 mod definition;
 mod error;
 mod law;

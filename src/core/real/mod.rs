@@ -18,6 +18,8 @@
 mod dual;
 pub mod elementary;
 #[cfg(target_arch = "x86_64")]
+mod fuse;
+#[cfg(target_arch = "x86_64")]
 pub mod fused;
 mod isa;
 mod lanes;

@@ -7,7 +7,7 @@
 use std::arch::x86_64::*;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};
 
-use super::fused::Fuse;
+use super::fuse::Fuse;
 use super::{Real, elementary};
 
 /// Defines a block of `$lanes` numbers in `$count` registers.

@@ -14,7 +14,7 @@ use crate::readback::read;
 use crate::sketch::{self, Drawing};
 use crate::statistics::whiteness;
 use crate::surface;
-use crate::train::start;
+use crate::network_start::start;
 
 /// Curves that are fitted, and their sizes as shares of what is foretold.
 const CURVES: usize = 4;

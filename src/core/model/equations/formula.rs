@@ -8,7 +8,7 @@ use super::parse::parse;
 use super::problem::{Problem, Role};
 use super::program::Program;
 use super::run::{Stored, run};
-use super::token::is_name;
+use super::lexer::is_name;
 use crate::model::{Block, Sizes};
 
 /// An expression of one variable and some parameters, run on lanes.

@@ -16,6 +16,7 @@ mod formula;
 mod function;
 mod graph;
 mod hint;
+mod lexer;
 mod march;
 mod names;
 mod parse;

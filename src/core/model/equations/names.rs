@@ -7,7 +7,7 @@ use super::function;
 use super::graph::{Graph, Id, Term};
 use super::problem::{Problem, Role};
 use super::table::Table;
-use super::token::is_name;
+use super::lexer::is_name;
 
 /// A declared name.
 #[derive(Debug, Clone)]

@@ -12,7 +12,8 @@ use super::error::Located;
 use super::expression::{Expression, Node, Operator};
 use super::function::{Function, Pair};
 use super::problem::{Expected, Problem};
-use super::token::{Token, tokens};
+use super::lexer::tokens;
+use super::token::Token;
 
 /// How many parentheses, powers and signs may stand within each other.
 pub const DEPTH: usize = 100;

@@ -16,17 +16,8 @@ pub use folded::Folded;
 pub use pair::Pair;
 pub use sparse::Sparse;
 
-use super::{F32x16, F64x8, InRegisters, Real, x86};
-
-/// A number that multiplies and adds in one step.
-pub trait Fuse: Real {
-    /// self * b + c
-    fn fma(self, b: Self, c: Self) -> Self;
-    /// self * b - c
-    fn fms(self, b: Self, c: Self) -> Self;
-    /// c - self * b
-    fn fnma(self, b: Self, c: Self) -> Self;
-}
+pub use super::fuse::Fuse;
+use super::{F32x16, F64x8, InRegisters, x86};
 
 /// A number that has registers which multiply and add in one step.
 pub trait Fusing: InRegisters {
