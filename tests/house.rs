@@ -167,7 +167,8 @@ fn paths_are_read_as_the_compiler_reads_them() {
 
 #[test]
 fn items_of_tests_are_left_out_and_nothing_behind_them() {
-    let text = "use a;\n#[cfg(test)]\nmod tests {\n    use b;\n}\n#[cfg(test)]\nmod more;\nuse c;\n";
+    let text =
+        "use a;\n#[cfg(test)]\nmod tests {\n    use b;\n}\n#[cfg(test)]\nmod more;\nuse c;\n";
     assert_eq!(without_tests(text), "use a;\nuse c;\n");
 }
 

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::dependence::{DEPENDS, dependence};
 use super::found::Slot;
 use super::library::{Allowed, library};
+use super::network_start::start;
 use super::problem::{Added, Grain, Model, Part};
 use super::readback::read;
 use super::refit::{Refit, refit};
@@ -14,7 +15,6 @@ use super::sets::{AS_GOOD, headed_by};
 use super::sketch::Drawing;
 use super::stage::{REFITTED, Trial, stage, trial};
 use super::surface::{NAME, Surface};
-use super::network_start::start;
 use crate::statistics::corrected_score;
 
 /// Laws that are trained, how many steps before the best of them is known, and the seeds of its

@@ -42,6 +42,7 @@ mod measure;
 mod mended;
 mod moved;
 mod naming;
+mod network_start;
 mod nominal;
 mod note;
 mod nuisance;
@@ -86,7 +87,6 @@ mod teller;
 mod tensor;
 mod together;
 mod track;
-mod network_start;
 mod withdrawn;
 
 pub use crate::watch::Watch;

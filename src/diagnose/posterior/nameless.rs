@@ -9,12 +9,12 @@ use super::starts;
 use super::study::Study;
 use crate::candidate::Candidate;
 use crate::dependence::{DEPENDS, dependence};
+use crate::network_start::start;
 use crate::problem::{Grain, Model};
 use crate::readback::read;
 use crate::sketch::{self, Drawing};
 use crate::statistics::whiteness;
 use crate::surface;
-use crate::network_start::start;
 
 /// Curves that are fitted, and their sizes as shares of what is foretold.
 const CURVES: usize = 4;

@@ -4,11 +4,11 @@ use super::error::Located;
 use super::expression::Node;
 use super::function;
 use super::graph::{Graph, Term};
+use super::lexer::is_name;
 use super::parse::parse;
 use super::problem::{Problem, Role};
 use super::program::Program;
 use super::run::{Stored, run};
-use super::lexer::is_name;
 use crate::model::{Block, Sizes};
 
 /// An expression of one variable and some parameters, run on lanes.

@@ -5,9 +5,9 @@ use std::collections::HashMap;
 use super::error::{EquationsError, Located};
 use super::function;
 use super::graph::{Graph, Id, Term};
+use super::lexer::is_name;
 use super::problem::{Problem, Role};
 use super::table::Table;
-use super::lexer::is_name;
 
 /// A declared name.
 #[derive(Debug, Clone)]

@@ -11,8 +11,8 @@
 use super::error::Located;
 use super::expression::{Expression, Node, Operator};
 use super::function::{Function, Pair};
-use super::problem::{Expected, Problem};
 use super::lexer::tokens;
+use super::problem::{Expected, Problem};
 use super::token::Token;
 
 /// How many parentheses, powers and signs may stand within each other.
