@@ -27,7 +27,7 @@ pub(super) fn decode<'a>(
             true => u16::from_be_bytes([pair[0], pair[1]]),
             false => u16::from_le_bytes([pair[0], pair[1]]),
         });
-        let whole = bytes.len() % 2 == 0;
+        let whole = bytes.len().is_multiple_of(2);
         return match char::decode_utf16(units).collect::<Result<String, _>>() {
             Ok(text) if whole => {
                 Ok((text.into(), Some(Remark::Encoding { name: "UTF-16", line: 1 })))

@@ -154,6 +154,7 @@ fn moments(q: &[Vec<f64>], e: &[f64]) -> (f64, f64) {
 }
 
 #[cfg(test)]
+#[allow(clippy::single_range_in_vec_init)] // a record of one segment
 mod tests {
     use super::*;
     use crate::data::Random;

@@ -21,6 +21,11 @@ impl Drive {
     pub fn len(&self) -> usize {
         self.inputs.first().map_or_else(|| self.segments.last().map_or(0, |s| s.end), Vec::len)
     }
+
+    /// Whether it has no samples.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
 }
 
 /// Another wiring of one slot, for this lane alone.

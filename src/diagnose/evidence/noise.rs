@@ -125,6 +125,7 @@ fn foretold(predictor: &[f64], x: &[f64], t: usize) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::single_range_in_vec_init)] // a record of one segment
 mod tests {
     use super::*;
     use crate::data::Random;

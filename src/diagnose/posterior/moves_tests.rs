@@ -48,7 +48,7 @@ fn a_compromise_gives_way_to_the_two_that_it_stands_for() {
         most: 5,
     };
     let white = Stretches::of_lengths(&[N]).white(&fit.residual);
-    let found = standing.moves(&items, &[white.clone()], false);
+    let found = standing.moves(&items, std::slice::from_ref(&white), false);
     let best = &found.moves[0];
     assert!(best.gain > 100.0, "{}", best.gain);
     // beside `sum` either of the two is enough to first order

@@ -90,6 +90,12 @@ impl State {
 #[derive(Debug, Clone, Copy)]
 pub struct Fingerprint(u64);
 
+impl Default for Fingerprint {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl Fingerprint {
     pub fn new() -> Self {
         Self(0xcbf2_9ce4_8422_2325)

@@ -1,4 +1,5 @@
 //! Tests of the likelihood, on plants of their own.
+#![allow(clippy::single_range_in_vec_init)] // a record of one segment
 
 mod filter;
 mod intensities;

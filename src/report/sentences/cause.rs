@@ -66,7 +66,7 @@ fn body(cause: &Cause) -> String {
     match wording.site {
         Site::Parameter => parameter(cause),
         Site::Drift => {
-            let rate = headline_value(cause).map_or_else(String::new, |v| signed(v));
+            let rate = headline_value(cause).map_or_else(String::new, signed);
             let from = wording.nominal.map_or_else(String::new, |v| {
                 format!(" (from {})", with_unit(v, &wording.units.0))
             });

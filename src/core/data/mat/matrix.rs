@@ -98,7 +98,7 @@ fn matrix(element: &Element<'_>, depth: usize) -> Result<Variable, String> {
 fn lines(text: &str, shape: &[usize]) -> Vec<String> {
     let letters: Vec<char> = text.chars().collect();
     let rows = shape.first().copied().unwrap_or(1);
-    if rows <= 1 || letters.len() % rows != 0 {
+    if rows <= 1 || !letters.len().is_multiple_of(rows) {
         return vec![text.trim_end().to_owned()];
     }
     let row = |r: usize| letters.iter().skip(r).step_by(rows).collect::<String>();
