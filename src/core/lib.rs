@@ -6,6 +6,7 @@ extern crate self as lacuna;
 
 pub mod data;
 pub mod digits;
+pub mod disk;
 pub mod effect;
 pub mod evaluate;
 pub mod fault;

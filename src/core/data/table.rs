@@ -4,8 +4,8 @@ use super::csv;
 use super::error::DataError;
 use super::kind;
 use super::remark::Remark;
+use crate::disk::regular;
 use crate::fault::Place;
-use crate::file::regular;
 use std::io::Read;
 use std::path::Path;
 

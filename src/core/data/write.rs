@@ -3,8 +3,8 @@
 use super::clock::digits;
 use super::error::DataError;
 use super::record::{Record, Signal};
+use crate::disk::write_whole;
 use crate::fault::Place;
-use crate::file::write_whole;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use std::io::{self, Write};

@@ -8,9 +8,9 @@ use serde::Deserialize;
 use super::complaint::Complaint;
 use super::error::FileError;
 use super::node::{Node, Syntax, Value};
-use super::regular::read_regular;
 use super::source::{Source, Spot};
 use super::{json, read, toml};
+use crate::disk::regular::read_regular;
 
 /// How a file is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,7 +4,7 @@ use std::io;
 
 use super::complaint::Complaint;
 use super::source::Spot;
-use super::whole::write_hint;
+use crate::disk::write_hint;
 use crate::effect::{DefinitionError, DefinitionProblem};
 use crate::fault::{Explain, Kind, Place, nearest};
 use crate::model::Fault;

@@ -19,10 +19,8 @@ mod json;
 mod lines;
 mod node;
 mod read;
-pub(crate) mod regular;
 mod source;
 mod toml;
-mod whole;
 mod write;
 mod written;
 
@@ -30,12 +28,11 @@ use std::path::Path;
 
 use crate::system::System;
 
+pub use crate::disk::{read_regular, write_hint, write_text, write_whole};
 pub use complaint::Complaint;
 pub use document::{Document, Format};
 pub use error::FileError;
-pub use regular::read_regular;
 pub use source::Spot;
-pub use whole::{write_hint, write_text, write_whole};
 pub use write::{save, save_with, to_json, to_toml, to_toml_with};
 
 /// Reads a model file, as TOML or JSON by its ending, else by its text, and checks that

@@ -10,7 +10,7 @@ use super::document::Format;
 use super::error::FileError;
 use super::lines;
 use super::source::Spot;
-use super::whole::write_text;
+use crate::disk::write_text;
 use crate::system::{Hold, Integrator, System};
 
 /// A system as a TOML model file. Defaults are left out; numbers have the shortest digits

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::TrainError;
 use super::fit::Epoch;
-use crate::file::{read_regular, write_text};
+use crate::disk::{read_regular, write_text};
 use crate::optimise::AdamState;
 
 /// Where and how often progress is written down.

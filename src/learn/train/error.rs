@@ -1,8 +1,8 @@
 //! What can go wrong in training.
 
+use crate::disk::write_hint;
 use crate::encoder::EncoderError;
 use crate::fault::{Explain, Kind};
-use crate::file::write_hint;
 use crate::lfr::LfrError;
 use crate::optimise::OptimiseError;
 
