@@ -68,7 +68,10 @@ pub fn ablate(fit: &mut Fit, records: &[Record], prune: bool) -> Result<Vec<Abla
         let ratio = error(&without(&present, group))? / whole;
         found.push(Ablation { kind: group.kind, name: group.name.clone(), ratio, removed: false });
     }
-    while prune {
+    loop {
+        if !prune {
+            return Ok(found);
+        }
         let mut least: Option<(usize, f64)> = None;
         for (i, group) in all.iter().enumerate().filter(|(i, _)| !found[*i].removed) {
             let there = group.entries.iter().any(|&entry| present[entry] != 0.0);
@@ -82,9 +85,7 @@ pub fn ablate(fit: &mut Fit, records: &[Record], prune: bool) -> Result<Vec<Abla
         present = without(&present, &all[i]);
         whole = error(&present)?.max(f64::MIN_POSITIVE);
     }
-    if prune {
-        fit.model.set_parameters(&present)?;
-    }
+    fit.model.set_parameters(&present)?;
     Ok(found)
 }
 
@@ -115,17 +116,18 @@ pub fn warnings(fit: &Fit) -> Vec<String> {
     });
     let scored: Vec<(usize, f64, f64)> = scored.collect();
     let best = scored.iter().copied().min_by(|a, b| a.2.total_cmp(&b.2));
-    if let (Some(best), Some(last)) = (best, scored.last()) {
-        if last.1 < best.1 && last.2 > 1.1 * best.2 {
-            said.push(format!(
-                "after epoch {} errors a few samples ahead fell by {:.0} % while those of the \
-                 simulation rose by {:.0} %: the sections are shorter than what the model \
-                 remembers",
-                best.0,
-                100.0 * (1.0 - last.1 / best.1),
-                100.0 * (last.2 / best.2 - 1.0)
-            ));
-        }
+    if let (Some(best), Some(last)) = (best, scored.last())
+        && last.1 < best.1
+        && last.2 > 1.1 * best.2
+    {
+        said.push(format!(
+            "after epoch {} errors a few samples ahead fell by {:.0} % while those of the \
+             simulation rose by {:.0} %: the sections are shorter than what the model \
+             remembers",
+            best.0,
+            100.0 * (1.0 - last.1 / best.1),
+            100.0 * (last.2 / best.2 - 1.0)
+        ));
     }
     said
 }

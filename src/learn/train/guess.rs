@@ -26,7 +26,7 @@ pub(crate) struct Guess<E: Number> {
 /// How it estimates.
 enum By<E: Number> {
     /// A network between its scales, in the precision of the training step.
-    Network(Arranged<E>),
+    Network(Box<Arranged<E>>),
     /// Its own estimates and slopes, in double precision; with the number of states.
     Itself(Box<dyn Encoder>, usize),
 }
@@ -46,7 +46,7 @@ pub(crate) struct GuessWork<E: Number> {
 impl<E: Number> Guess<E> {
     /// By a network.
     pub fn new(net: &ResNet, frame: Frame, pasts: Vec<Past>) -> Self {
-        Self { by: By::Network(Arranged::of(net, frame)), pasts }
+        Self { by: By::Network(Box::new(Arranged::of(net, frame))), pasts }
     }
 
     /// By any other encoder.

@@ -230,7 +230,10 @@ impl<'a> Steps<'a> {
             self.state.best = Some((whole, self.state.theta.clone(), epoch));
         }
         let rate = self.trainer.optimiser.batch_rate(&self.state.adam);
-        if self.trainer.sparse.s > 0.0 && epoch > 0 && epoch % self.trainer.sparse.reweight == 0 {
+        if self.trainer.sparse.s > 0.0
+            && epoch > 0
+            && epoch.is_multiple_of(self.trainer.sparse.reweight)
+        {
             self.state.reweighted = self.units.reweighted(&self.state.theta);
             self.units.reweight(&self.state.reweighted);
         }
