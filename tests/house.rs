@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 mod circles;
 
 /// Files of one concept that needs more than 300 lines; 450 are the limit.
-const LONGER: [&str; 13] = [
+const LONGER: [&str; 14] = [
     "src/core/effect/written.rs",
     "src/core/data/error.rs",
     "src/diagnose/finding.rs",
@@ -16,6 +16,7 @@ const LONGER: [&str; 13] = [
     "src/learn/lfr/engine.rs",
     "src/learn/lfr/program.rs",
     "src/learn/network/kernel.rs",
+    "src/learn/train/steps.rs",
     "src/core/optimise/levenberg.rs",
     "src/core/system/engine.rs",
     "src/core/system/wiring.rs",

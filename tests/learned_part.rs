@@ -138,7 +138,9 @@ fn what_is_masked_does_not_count() {
         let recipe = recipe(&format!("{TRAINING}{more}"));
         let mut trainer = recipe.training;
         trainer.epochs = 1;
-        let done = trainer.fit(&start, std::slice::from_ref(record), std::slice::from_ref(&validation), &mut ()).unwrap();
+        let done = trainer
+            .fit(&start, std::slice::from_ref(record), std::slice::from_ref(&validation), &mut ())
+            .unwrap();
         done.history[1].loss.unwrap()
     };
     let mask = "weights = { masks = [{ record = 1, output = \"y\", from = 540 }] }\n\
