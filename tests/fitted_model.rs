@@ -128,13 +128,10 @@ fn what_is_no_model_by_itself_is_refused() {
     looped.s.scale(Sink::Block(1, 0), Source::Block(1, 0), 0.1);
     let error = AugmentedModel::new(looped).into_system().unwrap_err();
     assert!(error.to_string().contains("loop"), "{error}");
+    // a first-order hold is turned into a model of whole samples
     let mut held = augmented(&Structure { hidden: vec![5], ..Structure::default() }, &record).model;
     if let Block::Baseline(baseline) = &mut held.blocks[0] {
         baseline.system = system(Hold::First);
     }
-    let error = AugmentedModel::new(held).into_system().unwrap_err();
-    assert!(
-        matches!(error, LfrError::Baseline { .. }) && error.to_string().contains("hold"),
-        "{error}"
-    );
+    assert!(AugmentedModel::new(held).into_system().is_ok());
 }

@@ -41,7 +41,7 @@ of = "rate"
 effect.coulomb_friction = { level = -0.1, width = 0.01 }
 [[effects]]
 into = "force"
-of = "p"
+of = "rate"
 effect.free_form = { knots = [-1.0, 0.0, 1.0], values = [0.0, 0.1, 0.0] }
 "#;
 const LTI: &str = r#"{"sampling_time": 0.1, "model": {"lti": {"A": [[0.9, 0.1], [0.0, 0.8]], "B": [[0.0], [1.0]],
@@ -55,7 +55,7 @@ const STUDY: &str = "model = 'm.toml'\ndata = ['a.csv']\nvalidate = ['b.csv']\ns
                      initialiser.random = {}\n[recipe.training]\nepochs = 20\n";
 const GENERATE: &str = "model = \"m.toml\"\nsamples = { est = 50, test = 30 }\nsnr_db = 30.0\ntransient = 5\n\
                         [excitation.filtered_noise]\ncutoff = 2.0\norder = 2\nrms = 20.0\n\
-                        [[hidden]]\ninto = \"force\"\nof = \"p\"\neffect.cubic = { coefficient = -40.0 }\n";
+                        [[hidden]]\ninto = \"force\"\nof = \"rate\"\neffect.cubic = { coefficient = -40.0 }\n";
 const NETWORK: &str = r#"{"layout": {"inputs": 2, "hidden": [1], "outputs": 1}, "weights": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]}"#;
 
 /// What has broken readers: sizes, numbers that are none, brackets, endings.
@@ -265,13 +265,13 @@ fn effects_that_make_no_sense() {
             "speed",
         ),
         (
-            "of = \"p\"\neffect.free_form = { knots = [1.0, 0.0, 2.0], values = [1.0, 0.0, 1.0] }",
+            "of = \"rate\"\neffect.free_form = { knots = [1.0, 0.0, 2.0], values = [1.0, 0.0, 1.0] }",
             "knots",
         ),
-        ("of = \"p\"\neffect.free_form = { knots = [0.0, 0.0], values = [1.0, 0.0] }", "knots"),
-        ("of = \"p\"\neffect.free_form = { knots = [0.0, 1.0], values = [1.0] }", "values"),
-        ("of = \"p\"\neffect.hinge = { coefficient = 1.0, start = 0.0, side = 0.0 }", "side"),
-        ("of = \"p\"\nalso_of = [\"p\"]\neffect.linear = { coefficient = 1.0 }", "also_of"),
+        ("of = \"rate\"\neffect.free_form = { knots = [0.0, 0.0], values = [1.0, 0.0] }", "knots"),
+        ("of = \"rate\"\neffect.free_form = { knots = [0.0, 1.0], values = [1.0] }", "values"),
+        ("of = \"rate\"\neffect.hinge = { coefficient = 1.0, start = 0.0, side = 0.0 }", "side"),
+        ("of = \"rate\"\nalso_of = [\"rate\"]\neffect.linear = { coefficient = 1.0 }", "also_of"),
     ] {
         let error = with(effect).map(drop).unwrap_err();
         let place = &error.spot().place;

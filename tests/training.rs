@@ -11,10 +11,8 @@ use lacuna::train::{Arithmetic, Augmented, MultipleShooting, Shooting};
 
 #[path = "bench/training/oracle.rs"]
 mod oracle;
-#[path = "paper_msd/without_adjoint.rs"]
-mod without_adjoint;
 
-use without_adjoint::WithoutAdjoint;
+use crate::without_adjoint::WithoutAdjoint;
 
 fn masses() -> MassSpringDamper {
     MassSpringDamper {

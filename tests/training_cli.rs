@@ -196,11 +196,6 @@ fn what_is_wrong_with_a_configuration_is_named_with_its_place() {
     assert!(place.refused(fit)["message"].as_str().unwrap().contains("damping"));
     place.put("bad.toml", &FIT.replace("length = 20\n", "length = 900\n"));
     assert!(place.refused(fit)["message"].as_str().unwrap().contains("900"));
-    // what could not be saved afterwards is refused before the work
-    place.put("ramp.toml", &format!("hold = \"first\"\n{MODEL}"));
-    let error =
-        place.refused("fit --model ramp.toml --data records/est.csv --config fit.toml --out out");
-    assert!(error["message"].as_str().unwrap().contains("hold"), "{error}");
     place.put("bad.toml", &format!("offset = {{ forc = 1.0 }}\n{GENERATE}"));
     let error = place.refused("generate --config bad.toml --out out");
     assert!(error["message"].as_str().unwrap().contains("forc"), "{error}");

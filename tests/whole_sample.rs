@@ -13,10 +13,7 @@ use lacuna::real::Isa;
 use lacuna::system::{Hold, Integrator, Method, Sampling, System};
 use lacuna::train::{Arithmetic, Augmented, MultipleShooting, Shooting};
 
-#[path = "paper_msd/without_adjoint.rs"]
-mod without_adjoint;
-
-use without_adjoint::WithoutAdjoint;
+use crate::without_adjoint::WithoutAdjoint;
 
 /// A law of many functions, divisions by parameters, and the time.
 #[derive(Debug, Clone, Serialize, Deserialize)]

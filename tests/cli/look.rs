@@ -27,7 +27,7 @@ fn a_record_is_looked_at() {
     let page = std::fs::read_to_string(folder.join("looked/look.html")).unwrap();
     assert!(page.matches("<svg").count() == 5 && !page.contains("http:"), "{}", page.len());
     let document = run(&folder, "look --data d.csv --out looked --json").exits(0).json();
-    assert!(document["records"][0]["coherences"][0]["share"].as_f64().unwrap() > 0.5);
+    assert!(document["records"][0]["coherences"][0]["share"].as_f64().unwrap() > 0.4);
     run(&folder, "look --data d.csv --inputs y --outputs u --out looked").exits(0);
 }
 
@@ -59,6 +59,10 @@ fn a_model_begins_from_a_plug_in_or_a_record() {
 fn columns_are_chosen_and_renamed_where_a_model_is_given() {
     let folder = folder("chosen");
     replaced(&folder, "t [s],push [N],place [m]");
+    // a model that states no step takes that of the record
+    let model = std::fs::read_to_string(folder.join("m.toml")).unwrap();
+    let rest: Vec<&str> = model.lines().filter(|l| !l.starts_with("sampling_time")).collect();
+    std::fs::write(folder.join("m.toml"), rest.join("\n")).unwrap();
     let line = "simulate --model m.toml --data n.csv";
     let refused = run(&folder, &format!("{line} --inputs push --outputs place --json")).exits(2);
     let hint = refused.json()["error"]["hint"].as_str().unwrap().to_owned();

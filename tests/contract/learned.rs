@@ -148,7 +148,7 @@ fn encoders_start_from_what_an_extended_model_says() {
                 Err(error) => {
                     let said = error.to_string();
                     assert!(
-                        ["no equilibrium", "no finite slope", "cannot be observed"]
+                        ["no equilibrium", "no finite slope", "cannot be observed", "diverges"]
                             .iter()
                             .any(|reason| said.contains(reason)),
                         "{place}: {said}"

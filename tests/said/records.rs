@@ -63,7 +63,7 @@ fn damping_that_is_off_in_all_records_but_one_is_said_not_to_show_there() {
     assert!(all[0] == Some(false) && with >= 4, "{:?}", cause.records);
     let text = sentences::cause(cause);
     assert!(text.contains(" only (not in est1.csv"), "{text}");
-    assert!(Report::of(&finding).html().contains("<th>record</th>"));
+    assert!(Report::of(&finding).html().contains(">record</th>"));
     assert!(finding.alone.is_empty());
 }
 

@@ -137,7 +137,10 @@ fn still(y: &[f64], simulated: &[f64]) -> Vec<(f64, Vec<usize>)> {
 pub(crate) fn gross_errors(record: &Record, before: usize) -> (Record, Vec<Fault>) {
     let (mut mended, mut faults) = (record.clone(), vec![]);
     for signal in &mut mended.outputs {
-        let rows = gross(&signal.values);
+        // readings of one value that come back are a dropout's, which is told by its value
+        let fallen = dropouts(&signal.values).map_or(vec![], |(_, rows)| rows);
+        let mut rows = gross(&signal.values);
+        rows.retain(|row| !fallen.contains(row));
         let Some(&first) = rows.first() else { continue };
         faults.push(Fault {
             kind: FaultKind::Gross(signal.values[first]),

@@ -1,0 +1,12 @@
+//! The learned part: encoders, networks, training, and the paper.
+//!
+//! Apart from the library, because its tests register models of their own.
+
+mod encoder;
+mod learned_part;
+mod paper_msd;
+mod trainer;
+mod training;
+mod whole_sample;
+#[path = "paper_msd/without_adjoint.rs"]
+mod without_adjoint;
