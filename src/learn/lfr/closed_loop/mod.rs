@@ -212,6 +212,6 @@ impl Law for ClosedLoop {
 
 crate::register!(StateSpaceModel for ClosedLoop, "closed_loop",
     "a plant with its effects in the loop of a known controller",
-    "plant = { sampling_time = 0.05, model.duffing = { mass = 1.0, damping = 0.5, stiffness = 10.0, hardening = 3.0 } }\n\
+    "plant = { sampling_time = 0.05, model.duffing = { mass = 1.0, damping = 0.5, stiffness = 10.0, hardening = 0.1 } }\n\
      controller = { references = [\"r\"], measured = [\"y\"], drives = [\"u\"], inject = [\"d\"], \
      law.lti = { A = [[0.5]], B = [[0.3, -0.3]], C = [[1.0]], D = [[4.0, -4.0]] } }");

@@ -169,5 +169,5 @@ crate::register!(StateSpaceModel for Sampled, "sampled",
     "a model with its effects, advanced by a whole sample at a time",
     "sampling_time = 0.05\n\
      model.duffing = { mass = 1.0, damping = 0.5, stiffness = 100.0, hardening = 1.0 }\n\
-     effects = [{ into = \"force\", of = \"v\", effect.drag.coefficient = 0.3 }, \
+     effects = [{ into = \"force\", of = \"v\", effect.drag.coefficient = -0.03 }, \
      { into = \"u\", of = \"u\", effect.lag.time_constant = 0.2 }]");
