@@ -6,9 +6,7 @@ use lacuna::encoder::{Baseline as Known, Encoder, ResNetEncoder, Spread, Window}
 use lacuna::estimate::estimate;
 use lacuna::evaluate::{Init, Simulation};
 use lacuna::file::{Format, parse, to_json, to_toml};
-use lacuna::lfr::{
-    AugmentedModel, Baseline, Block, Form, LfrError, Scales, Sink, Source, Structure,
-};
+use lacuna::lfr::{AugmentedModel, Baseline, Block, Form, Scales, Sink, Source, Structure};
 use lacuna::plugins::systems::Duffing;
 use lacuna::system::{Hold, Integrator, Method, Sampling, System};
 use lacuna::train::Augmented;
