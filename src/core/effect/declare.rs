@@ -4,56 +4,56 @@ use super::card::EffectCard;
 use super::properties::{ShapeOf, Size};
 
 impl EffectCard {
-    /// The same, unable to leave a range on its own path; see [`Properties::limits_output`].
+    /// The same, unable to leave a range on its own path; see [`Properties::limits_output`](super::Properties::limits_output).
     #[must_use]
     pub fn limits_output(mut self) -> Self {
         self.properties.limits_output = true;
         self
     }
 
-    /// The same, periodic where it depends on time; see [`Properties::periodic_in_time`].
+    /// The same, periodic where it depends on time; see [`Properties::periodic_in_time`](super::Properties::periodic_in_time).
     #[must_use]
     pub fn periodic_in_time(mut self) -> Self {
         self.properties.periodic_in_time = true;
         self
     }
 
-    /// The same, of straight pieces; see [`Properties::piecewise_linear`].
+    /// The same, of straight pieces; see [`Properties::piecewise_linear`](super::Properties::piecewise_linear).
     #[must_use]
     pub fn piecewise_linear(mut self) -> Self {
         self.properties.piecewise_linear = true;
         self
     }
 
-    /// The same, flat within plus and minus this parameter; see [`Properties::flat_inside`].
+    /// The same, flat within plus and minus this parameter; see [`Properties::flat_inside`](super::Properties::flat_inside).
     #[must_use]
     pub fn flat_inside(mut self, parameter: &'static str) -> Self {
         self.properties.flat_inside = Some(parameter);
         self
     }
 
-    /// The same with a parameter that only smooths a step; see [`Properties::smoothing_width`].
+    /// The same with a parameter that only smooths a step; see [`Properties::smoothing_width`](super::Properties::smoothing_width).
     #[must_use]
     pub fn smoothing_width(mut self, parameter: &'static str) -> Self {
         self.properties.smoothing_width = Some(parameter);
         self
     }
 
-    /// The same with an oscillation of this frequency; see [`Properties::resonance`].
+    /// The same with an oscillation of this frequency; see [`Properties::resonance`](super::Properties::resonance).
     #[must_use]
     pub fn resonance(mut self, parameter: &'static str) -> Self {
         self.properties.resonance = Some(parameter);
         self
     }
 
-    /// The same, one number of an instrument; see [`Properties::of_an_instrument`].
+    /// The same, one number of an instrument; see [`Properties::of_an_instrument`](super::Properties::of_an_instrument).
     #[must_use]
     pub fn of_an_instrument(mut self) -> Self {
         self.properties.of_an_instrument = true;
         self
     }
 
-    /// The same, friction; see [`Properties::is_friction`].
+    /// The same, friction; see [`Properties::is_friction`](super::Properties::is_friction).
     #[must_use]
     pub fn friction(mut self) -> Self {
         self.properties.is_friction = true;

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::optimise::{Lbfgs, Named};
 
 /// How much records and outputs count: the weight of one squared error of output o in record r
-/// is outputs[o] records[r], and 0 where it is masked.
+/// is outputs\[o\] records\[r\], and 0 where it is masked.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Weights {
