@@ -167,7 +167,7 @@ pub struct Wording {
 }
 
 /// A named cause.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Cause {
     /// Effect.
     pub effect: String,

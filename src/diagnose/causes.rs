@@ -207,20 +207,8 @@ pub(crate) fn of_column(
     Cause {
         effect: effect.into(),
         into: into.into(),
-        of: None,
-        also_into: vec![],
-        also_of: vec![],
         parts: vec![LawPart { effect: effect.into(), parameters: parameters.clone() }],
         parameters,
-        p_value: None,
-        probability: None,
-        place_probability: None,
-        error_removed: 0.0,
-        indistinguishable: vec![],
-        runners_up: vec![],
-        onset: None,
-        acts_where: None,
-        records: None,
         rows: Some(rows),
         wording: Wording {
             title: title_of(effect),
@@ -228,6 +216,7 @@ pub(crate) fn of_column(
             fault: Some(fault),
             ..Wording::default()
         },
+        ..Cause::default()
     }
 }
 

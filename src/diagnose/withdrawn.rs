@@ -53,17 +53,8 @@ fn as_cause(added: &Added) -> Cause {
         also_of: cause.also_of.clone(),
         parts: cause.as_part(&parameters),
         parameters,
-        p_value: None,
-        probability: None,
-        place_probability: None,
-        error_removed: 0.0,
-        indistinguishable: vec![],
-        runners_up: vec![],
-        onset: None,
-        acts_where: None,
-        records: None,
-        rows: None,
         wording: cause.wording(None),
+        ..Cause::default()
     }
 }
 

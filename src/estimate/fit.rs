@@ -86,14 +86,10 @@ pub fn estimate_with(
     seed: u64,
     watch: &dyn Watch,
 ) -> Result<Estimate, EvaluateError> {
-    let fit = Fit::new(system, records, held, watch)?;
-    watch.tell(0.0, "trying starts");
-    let (best, before) = fit.best_start(seed)?;
-    watch.tell(0.3, "fitting");
-    let settings = Settings { iterations: 60, tolerance: 1e-9, difference: 1e-5 };
-    let done = fit.run(&[best], settings, usize::MAX).swap_remove(0);
-    watch.tell(1.0, "done");
-    fit.told(&done, before)
+    from_best_start(system, records, held, seed, watch, |fit, best| {
+        let settings = Settings { iterations: 60, tolerance: 1e-9, difference: 1e-5 };
+        Ok(fit.run(&[best], settings, usize::MAX).swap_remove(0))
+    })
 }
 
 /// The same by an optimiser of the caller's choice, from the best start; errors are those at the
@@ -110,12 +106,25 @@ pub fn estimate_by(
     seed: u64,
     watch: &dyn Watch,
 ) -> Result<Estimate, EvaluateError> {
+    from_best_start(system, records, held, seed, watch, |fit, best| {
+        Ok(fit.linearised(&fit.lower(optimiser, best)?))
+    })
+}
+
+/// An estimate by a descent from the best of several starts.
+fn from_best_start(
+    system: &System,
+    records: &[Record],
+    held: &[String],
+    seed: u64,
+    watch: &dyn Watch,
+    descend: impl FnOnce(&Fit<'_>, Vec<f64>) -> Result<Levenberg, EvaluateError>,
+) -> Result<Estimate, EvaluateError> {
     let fit = Fit::new(system, records, held, watch)?;
     watch.tell(0.0, "trying starts");
     let (best, before) = fit.best_start(seed)?;
     watch.tell(0.3, "fitting");
-    let point = fit.lower(optimiser, best)?;
-    let done = fit.linearised(&point);
+    let done = descend(&fit, best)?;
     watch.tell(1.0, "done");
     fit.told(&done, before)
 }

@@ -6,6 +6,8 @@
 //! Sources: Levinson, J. Math. Phys. 25, 1947; Ljung, "System Identification", 2nd ed., section 7.4;
 //! Brockwell and Davis, "Time Series: Theory and Methods", 2nd ed., section 5.2.
 
+use crate::statistics::levinson;
+
 /// Largest order.
 pub(crate) const MOST: usize = 16;
 
@@ -26,7 +28,10 @@ impl Autoregression {
     pub(crate) fn of(series: &[f64]) -> Self {
         let count = series.iter().filter(|e| e.is_finite()).count().max(1) as f64;
         let most = MOST.min((count / 10.0) as usize);
-        let predictors = levinson(&covariances(series, most));
+        let predictors: Vec<(Vec<f64>, f64)> = levinson(&covariances(series, most))
+            .into_iter()
+            .map(|found| (found.coefficients(), found.variance))
+            .collect();
         let mut best: Option<(f64, Self)> = None;
         for order in 0..predictors.len() {
             let last = predictors[order].1;
@@ -101,25 +106,6 @@ fn covariances(series: &[f64], most: usize) -> Vec<f64> {
             finite.sum::<f64>() / count
         })
         .collect()
-}
-
-/// Predictors of order 0, 1, .. from autocovariances, each with the variance of its error.
-fn levinson(r: &[f64]) -> Vec<(Vec<f64>, f64)> {
-    let mut found = vec![(vec![], r[0])];
-    let (mut a, mut v): (Vec<f64>, f64) = (vec![], r[0]);
-    for p in 1..r.len() {
-        let expected: f64 = a.iter().enumerate().map(|(i, a)| a * r[p - 1 - i]).sum();
-        let reflection = (r[p] - expected) / v;
-        if !(reflection.abs() < 1.0) {
-            break;
-        }
-        let mut next: Vec<f64> = (0..p - 1).map(|i| a[i] - reflection * a[p - 2 - i]).collect();
-        next.push(reflection);
-        a = next;
-        v *= 1.0 - reflection * reflection;
-        found.push((a.clone(), v));
-    }
-    found
 }
 
 #[cfg(test)]

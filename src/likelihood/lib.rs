@@ -15,7 +15,7 @@
 // examples say `lacuna::`
 extern crate self as lacuna;
 
-use lacuna_core::{data, effect, evaluate, fault, optimise, real, register, system};
+use lacuna_core::{data, effect, evaluate, fault, optimise, real, register, statistics, system};
 
 mod autoregressive;
 mod backward;

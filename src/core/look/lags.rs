@@ -8,6 +8,7 @@
 //! feedback; a record whose input repeats cannot show it, because its future is its past.
 
 use crate::data::Record;
+use crate::statistics::levinson;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 use serde::Serialize;
@@ -80,27 +81,19 @@ fn covariance(a: &[f64], b: &[f64], lags: usize) -> (Vec<f64>, Vec<f64>) {
     (before, time[..lags].iter().map(|v| v * scale).collect())
 }
 
-/// Levinson's recursion: the whitening filter, and the prediction error for 0, 1.. past values
-/// as a share of the variance.
+/// The whitening filter, and the prediction error for 0, 1.. past values as a share of the
+/// variance; 0 where the past leaves nothing.
 pub(super) fn prediction_errors(r: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let (mut filter, mut errors) = (vec![1.0], vec![1.0]);
-    let Some(&power) = r.first().filter(|power| **power > 0.0) else { return (filter, errors) };
-    let mut left = 1.0;
-    for m in 1..r.len() {
-        let reflection = -(0..m).map(|i| filter[i] * r[m - i] / power).sum::<f64>() / left;
-        if !(reflection.abs() < 1.0) {
-            errors.push(0.0);
-            break;
-        }
-        filter.push(0.0);
-        let before = filter.clone();
-        for i in 1..=m {
-            filter[i] += reflection * before[m - i];
-        }
-        left *= 1.0 - reflection * reflection;
-        errors.push(left);
+    let Some(&power) = r.first().filter(|power| **power > 0.0) else {
+        return (vec![1.0], vec![1.0]);
+    };
+    let shares: Vec<f64> = r.iter().map(|r| r / power).collect();
+    let mut found = levinson(&shares);
+    let mut errors: Vec<f64> = found.iter().map(|predictor| predictor.variance).collect();
+    if errors.len() < r.len() {
+        errors.push(0.0);
     }
-    (filter, errors)
+    (found.pop().map_or_else(|| vec![1.0], |predictor| predictor.filter), errors)
 }
 
 /// Every input with every output, on the longest stretch.

@@ -1,22 +1,7 @@
 //! What is seen in records that were made to show it.
 
 use super::*;
-
-/// White noise of unit variance.
-fn noise(n: usize, mut seed: u64) -> Vec<f64> {
-    (0..n)
-        .map(|_| {
-            let mut sum = 0.0;
-            for _ in 0..12 {
-                seed ^= seed << 13;
-                seed ^= seed >> 7;
-                seed ^= seed << 17;
-                sum += (seed >> 11) as f64 / (1_u64 << 53) as f64;
-            }
-            sum - 6.0
-        })
-        .collect()
-}
+use crate::statistics::test_noise::noise;
 
 fn look(u: Vec<f64>, y: Vec<f64>) -> Look {
     Look::of(&Record::new(0.01).input("u [N]", u).unwrap().output("y [m]", y).unwrap())

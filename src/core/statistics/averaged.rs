@@ -1,7 +1,7 @@
 //! Several periods of one signal: their average, line by line, and the noise that it has left.
 
 use super::lines::{lines, ratio_tail};
-use super::{autocorrelation, mean};
+use super::{autocorrelation, levinson, mean};
 use realfft::num_complex::Complex;
 
 /// Past samples that whiten the noise, at most.
@@ -114,29 +114,15 @@ fn filtered(periods: &[Vec<f64>], p: usize, filter: &[f64]) -> Vec<f64> {
     (0..n).map(|k| filter.iter().enumerate().map(|(i, a)| a * value(k, i)).sum()).collect()
 }
 
-/// 1 and the coefficients of the autoregression that whitens a series (Levinson's recursion).
+/// 1 and the coefficients of the autoregression that whitens a series.
 fn whitening(x: &[f64], order: usize) -> Vec<f64> {
-    let mut filter = vec![1.0];
     if x.len() <= order || !(super::dot(x, x) > 0.0) {
-        return filter;
+        return vec![1.0];
     }
     let centre = mean(x);
     let centred: Vec<f64> = x.iter().map(|v| v - centre).collect();
-    let r = autocorrelation(&centred, order + 1);
-    let mut left = 1.0;
-    for m in 1..r.len() {
-        let reflection = -(0..m).map(|i| filter[i] * r[m - i]).sum::<f64>() / left;
-        if !(reflection.abs() < 1.0) {
-            break;
-        }
-        filter.push(0.0);
-        let before = filter.clone();
-        for i in 1..=m {
-            filter[i] += reflection * before[m - i];
-        }
-        left *= 1.0 - reflection * reflection;
-    }
-    filter
+    let last = levinson(&autocorrelation(&centred, order + 1)).pop();
+    last.map_or_else(|| vec![1.0], |predictor| predictor.filter)
 }
 
 #[cfg(test)]

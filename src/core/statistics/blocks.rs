@@ -213,6 +213,7 @@ pub fn whiteness(x: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::statistics::test_noise::noise;
 
     #[test]
     fn what_happens_in_one_block_proves_nothing() {
@@ -225,22 +226,6 @@ mod tests {
         assert_eq!(wald(&ff, &fr), 0.0);
         let (ff, fr) = step(10, 3000);
         assert!(wald(&ff, &fr) > 8.0, "{}", wald(&ff, &fr));
-    }
-
-    /// A small deterministic noise source for the tests.
-    fn noise(n: usize, mut seed: u64) -> Vec<f64> {
-        (0..n)
-            .map(|_| {
-                let mut sum = 0.0;
-                for _ in 0..12 {
-                    seed ^= seed << 13;
-                    seed ^= seed >> 7;
-                    seed ^= seed << 17;
-                    sum += (seed >> 11) as f64 / (1u64 << 53) as f64;
-                }
-                sum - 6.0
-            })
-            .collect()
     }
 
     #[test]

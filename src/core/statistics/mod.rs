@@ -5,11 +5,14 @@ mod basis;
 mod blocks;
 mod coloured;
 mod gross;
+mod levinson;
 mod lines;
 mod plans;
 mod sandwich;
 mod score_test;
 mod spectrum;
+#[cfg(test)]
+pub(crate) mod test_noise;
 
 pub use averaged::Averaged;
 pub use basis::{add_to_basis, project};
@@ -18,6 +21,7 @@ pub use blocks::{
     normal_tail, odds, rms, spread, wald, weight, whiteness,
 };
 pub use gross::gross;
+pub use levinson::{Predictor, levinson};
 pub use lines::lines;
 pub use sandwich::covariance;
 pub use score_test::{Dependence, Regression};

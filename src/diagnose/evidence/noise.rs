@@ -6,7 +6,7 @@
 
 use std::ops::Range;
 
-use crate::statistics::dot;
+use crate::statistics::{dot, levinson};
 
 /// Highest order.
 const ORDER: usize = 16;
@@ -36,22 +36,10 @@ impl Autoregressive {
             };
             stretches.iter().map(one).sum::<f64>() / count.max(1.0)
         };
-        let c: Vec<f64> = (0..=ORDER).map(at).collect();
-        let mut predictors: Vec<Vec<f64>> = vec![vec![]];
-        let mut variances = vec![c[0].max(1e-300)];
-        for p in 1..=ORDER {
-            let last = &predictors[p - 1];
-            let known: f64 = (1..p).map(|i| last[i - 1] * c[p - i]).sum();
-            let reflection = (c[p] - known) / variances[p - 1];
-            if !(reflection.abs() < 1.0) {
-                break;
-            }
-            let mut next: Vec<f64> =
-                (1..p).map(|i| last[i - 1] - reflection * last[p - i - 1]).collect();
-            next.push(reflection);
-            variances.push(variances[p - 1] * (1.0 - reflection * reflection));
-            predictors.push(next);
-        }
+        let mut c: Vec<f64> = (0..=ORDER).map(at).collect();
+        c[0] = c[0].max(1e-300);
+        let (mut predictors, mut variances): (Vec<Vec<f64>>, Vec<f64>) =
+            levinson(&c).into_iter().map(|found| (found.coefficients(), found.variance)).unzip();
         let criterion = |p: usize| count * variances[p].ln() + p as f64 * count.max(2.0).ln();
         let order = (0..variances.len())
             .min_by(|&a, &b| criterion(a).total_cmp(&criterion(b)))

@@ -17,19 +17,7 @@ fn law(title: &str, into: &str, of: Option<&str>, site: Site, values: Vec<Value>
         effect: "law".into(),
         into: into.into(),
         of: of.map(String::from),
-        also_into: vec![],
-        also_of: vec![],
-        parts: vec![],
-        p_value: None,
-        probability: None,
-        place_probability: None,
         error_removed: 0.5,
-        indistinguishable: vec![],
-        runners_up: vec![],
-        onset: None,
-        acts_where: None,
-        records: None,
-        rows: None,
         wording: Wording {
             title: title.into(),
             first: values.first().map(|v| v.name.clone()),
@@ -37,6 +25,7 @@ fn law(title: &str, into: &str, of: Option<&str>, site: Site, values: Vec<Value>
             ..Wording::default()
         },
         parameters: values,
+        ..Cause::default()
     }
 }
 
