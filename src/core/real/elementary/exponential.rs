@@ -1,6 +1,6 @@
 //! The exponential function.
 
-use super::{LN2_HIGH, LN2_LOW, ROUND, each, polynomial, sum};
+use super::{LN2_HIGH, LN2_LOW, ROUND, polynomial, sum};
 
 /// 1 / ln 2.
 pub(super) const INVERSE_LN2: f64 = std::f64::consts::LOG2_E;
@@ -52,5 +52,5 @@ pub fn exp<const N: usize>(x: [f64; N]) -> [f64; N] {
         let x = if x < -760.0 { -760.0 } else { x };
         exp_of_sum(x, 0.0)
     }
-    each(x, one)
+    each!(x, one)
 }

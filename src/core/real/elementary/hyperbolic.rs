@@ -1,7 +1,7 @@
 //! Hyperbolic functions.
 
 use super::exponential::{COSH, INVERSE_LN2, SINH};
-use super::{LN2_HIGH, LN2_LOW, ROUND, each, leading, polynomial, power_of_two, quotient, sum};
+use super::{LN2_HIGH, LN2_LOW, ROUND, leading, polynomial, power_of_two, quotient, sum};
 
 /// From here on e^-x no longer counts beside e^x.
 const CAP: f64 = 64.0;
@@ -56,7 +56,7 @@ pub fn sinh<const N: usize>(x: [f64; N]) -> [f64; N] {
         let pair = sinh_and_cosh(up_to(720.0, x.abs()));
         ((pair.sinh.0 + pair.sinh.1) * pair.scale).copysign(x)
     }
-    each(x, one)
+    each!(x, one)
 }
 
 /// The hyperbolic cosine of every element.
@@ -67,7 +67,7 @@ pub fn cosh<const N: usize>(x: [f64; N]) -> [f64; N] {
         let pair = sinh_and_cosh(up_to(720.0, x.abs()));
         (pair.cosh.0 + pair.cosh.1) * pair.scale
     }
-    each(x, one)
+    each!(x, one)
 }
 
 /// The hyperbolic tangent of every element.
@@ -82,5 +82,5 @@ pub fn tanh<const N: usize>(x: [f64; N]) -> [f64; N] {
         let (q, rest) = quotient((sinh, sinh_low), (cosh, cosh_low));
         (q + rest).copysign(x)
     }
-    each(x, one)
+    each!(x, one)
 }

@@ -1,6 +1,6 @@
 //! Inverse trigonometric functions.
 
-use super::{each, each_pair, leading, polynomial, quotient, sum, sum_any};
+use super::{leading, polynomial, quotient, sum, sum_any};
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 
 /// (asin u / u - 1) / z in z = u^2 for u up to 1/2: Remez exchange by
@@ -79,7 +79,7 @@ pub fn asin<const N: usize>(x: [f64; N]) -> [f64; N] {
         let y = if beyond { far } else { high + low };
         y.copysign(x)
     }
-    each(x, one)
+    each!(x, one)
 }
 
 /// The inverse cosine of every element, in radians; not a number beyond -1 to 1.
@@ -99,7 +99,7 @@ pub fn acos<const N: usize>(x: [f64; N]) -> [f64; N] {
         let (total, lost) = sum(base, -factor * high);
         total + (lost + (base_low - factor * low))
     }
-    each(x, one)
+    each!(x, one)
 }
 
 /// The angle of the point (`x`, `y`) for y >= 0, both zero or from 2^-500 to 2^500 in
@@ -148,7 +148,7 @@ pub fn atan<const N: usize>(x: [f64; N]) -> [f64; N] {
         let size = if size > 1152921504606846976.0 { 1152921504606846976.0 } else { size };
         angle(size, 1.0).copysign(x)
     }
-    each(x, one)
+    each!(x, one)
 }
 
 /// Whether [`angle`] holds for |y| and `x`.
@@ -175,7 +175,7 @@ pub fn atan2<const N: usize>(y: [f64; N], x: [f64; N]) -> [f64; N] {
     fn one(y: f64, x: f64) -> f64 {
         angle(y.abs(), x).copysign(y)
     }
-    let mut result = each_pair(y, x, one);
+    let mut result = each_pair!(y, x, one);
     let mut all = true;
     for i in 0..N {
         all &= ordinary(y[i], x[i]);

@@ -1,6 +1,6 @@
 //! The natural logarithm.
 
-use super::{LN2_HIGH, LN2_LOW, each, polynomial, sum};
+use super::{LN2_HIGH, LN2_LOW, polynomial, sum};
 
 /// (2 atanh(s) / s - 2) / z in z = s^2 for s up to 3 - 2 sqrt(2): Remez exchange by
 /// docs/elementary_coefficients.py, error of atanh(s) / s below 2^-59.
@@ -50,5 +50,5 @@ pub fn ln<const N: usize>(x: [f64; N]) -> [f64; N] {
         let y = if x == 0.0 { f64::NEG_INFINITY } else { y };
         if x < 0.0 { f64::NAN } else { y }
     }
-    each(x, one)
+    each!(x, one)
 }

@@ -32,6 +32,31 @@
 //! others and the size of the block do not matter. Zero and negative bases take that
 //! way, and infinities and NaN do where the table does not say "all".
 
+// Macros, because a function that is handed to another is called through `Fn`, whose call is not
+// compiled for the caller's vector instructions.
+
+/// `f` of every element.
+macro_rules! each {
+    ($x:expr, $f:path) => {{
+        let mut x = $x;
+        for x in &mut x {
+            *x = $f(*x);
+        }
+        x
+    }};
+}
+
+/// `f` of every pair of elements.
+macro_rules! each_pair {
+    ($a:expr, $b:expr, $f:path) => {{
+        let mut a = $a;
+        for (a, &b) in a.iter_mut().zip(&$b) {
+            *a = $f(*a, b);
+        }
+        a
+    }};
+}
+
 mod exponential;
 mod huge_angle;
 mod hyperbolic;
@@ -57,28 +82,6 @@ const ROUND: f64 = 6755399441055744.0;
 const LN2_HIGH: f64 = 0.6931471805598903;
 /// ln 2 less `LN2_HIGH`.
 const LN2_LOW: f64 = 5.497923018708371e-14;
-
-/// `f` of every element.
-#[inline(always)]
-fn each<const N: usize>(mut x: [f64; N], f: impl Fn(f64) -> f64) -> [f64; N] {
-    for x in &mut x {
-        *x = f(*x);
-    }
-    x
-}
-
-/// `f` of every pair of elements.
-#[inline(always)]
-fn each_pair<const N: usize>(
-    mut a: [f64; N],
-    b: [f64; N],
-    f: impl Fn(f64, f64) -> f64,
-) -> [f64; N] {
-    for (a, &b) in a.iter_mut().zip(&b) {
-        *a = f(*a, b);
-    }
-    a
-}
 
 /// The 26 leading bits of a number: products of two such are exact.
 #[inline(always)]

@@ -2,7 +2,7 @@
 
 use super::exponential::exp_of_sum;
 use super::logarithm::exponent_and_mantissa;
-use super::{LN2_HIGH, LN2_LOW, each_pair, leading, polynomial, quotient, sum};
+use super::{LN2_HIGH, LN2_LOW, leading, polynomial, quotient, sum};
 
 /// ((2 atanh(s) / s - 2) / z - 2/3) / z in z = s^2 for s up to 3 - 2 sqrt(2): Remez
 /// exchange by docs/elementary_coefficients.py, error of atanh(s) / s below 2^-73.
@@ -85,7 +85,7 @@ fn ordinary(x: f64, y: f64) -> bool {
 /// Anything to the power of 0, and 1 to any power, is 1.
 #[inline(always)]
 pub fn pow<const N: usize>(x: [f64; N], exponent: [f64; N]) -> [f64; N] {
-    let mut y = each_pair(x, exponent, power_of_positive);
+    let mut y = each_pair!(x, exponent, power_of_positive);
     let mut all = true;
     for i in 0..N {
         all &= ordinary(x[i], exponent[i]);

@@ -1,6 +1,6 @@
 //! Sine, cosine and tangent.
 
-use super::{ROUND, each, polynomial, quotient, sum, sum_any};
+use super::{ROUND, polynomial, quotient, sum, sum_any};
 
 /// (sin r / r - 1) / z in z = r^2 for |r| <= pi/4: Remez exchange by
 /// docs/elementary_coefficients.py, error of sin r / r below 2^-58.
@@ -141,7 +141,7 @@ pub fn sin<const N: usize>(x: [f64; N]) -> [f64; N] {
     fn one(x: f64) -> f64 {
         zero_kept(x, sin_of(reduce(x), 0))
     }
-    let y = each(x, one);
+    let y = each!(x, one);
     mended(x, y, |angle| sin_of(angle, 0))
 }
 
@@ -152,7 +152,7 @@ pub fn cos<const N: usize>(x: [f64; N]) -> [f64; N] {
     fn one(x: f64) -> f64 {
         sin_of(reduce(x), 1)
     }
-    mended(x, each(x, one), |angle| sin_of(angle, 1))
+    mended(x, each!(x, one), |angle| sin_of(angle, 1))
 }
 
 /// The tangent of every element, in radians.
@@ -162,6 +162,6 @@ pub fn tan<const N: usize>(x: [f64; N]) -> [f64; N] {
     fn one(x: f64) -> f64 {
         zero_kept(x, tan_of(reduce(x)))
     }
-    let y = each(x, one);
+    let y = each!(x, one);
     mended(x, y, tan_of)
 }
