@@ -1,10 +1,10 @@
 //! The fit itself: simulation error, several starts, bounds, intervals.
 
 mod lower;
+mod residuals;
 mod starts;
 mod told;
 
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::rank::Combination;
@@ -13,7 +13,7 @@ use crate::effect::Role;
 use crate::evaluate::{EvaluateError, Init, Run};
 use crate::optimise::{Levenberg, Optimiser, Settings, Unknown};
 use crate::statistics::deviation;
-use crate::system::{Lane, System};
+use crate::system::System;
 use crate::watch::Watch;
 
 /// One estimated parameter.
@@ -223,82 +223,5 @@ impl<'a> Fit<'a> {
         let spreads = (0..signals.outputs.len()).map(spread).collect();
         let source = records.first().map_or_else(String::new, |r| r.source.clone());
         Ok(Self { keys, unknowns, spreads, system, names, runs, source, watch, stretch })
-    }
-
-    fn lane(&self, point: &[f64], r: usize) -> Lane {
-        let run = &self.runs[r];
-        let mut lane = Lane {
-            theta: run.plan.signals.theta(),
-            knobs: run.plan.knob_values(),
-            starts: vec![run.plan.signals.initial(); run.drive.segments.len()],
-            ..Lane::default()
-        };
-        for (&key, &value) in self.keys.iter().zip(point) {
-            match key {
-                Key::Theta(p) => lane.theta[p] = value,
-                Key::Knob(k) => lane.knobs[k] = value,
-                Key::Start(of, s, i) if of == r => lane.starts[s][i] = value,
-                Key::Start(..) => {}
-            }
-        }
-        lane
-    }
-
-    /// Residuals of many points, over the first `most` samples of every record.
-    fn residuals(&self, points: &[Vec<f64>], most: usize) -> Vec<Option<Vec<f64>>> {
-        let chunks: Vec<&[Vec<f64>]> = points.chunks(16).collect();
-        chunks
-            .into_par_iter()
-            .flat_map_iter(|points| {
-                let mut all: Vec<Option<Vec<f64>>> = vec![Some(vec![]); points.len()];
-                for (r, run) in self.runs.iter().enumerate() {
-                    let lanes: Vec<Lane> = points.iter().map(|p| self.lane(p, r)).collect();
-                    let drive = run.first(most);
-                    let tracks = self.system.run(&run.plan, &drive, &lanes);
-                    for (all, track) in all.iter_mut().zip(tracks) {
-                        if !track.is_finite() {
-                            *all = None;
-                        }
-                        let Some(all) = all else { continue };
-                        for (o, measured) in run.measured.iter().enumerate() {
-                            let Some(measured) = measured else { continue };
-                            let over = 1.0 / self.spreads[o];
-                            let known = drive.segments.iter().cloned().flatten();
-                            all.extend(
-                                known
-                                    .filter(|&k| measured[k].is_finite())
-                                    .map(|k| (measured[k] - track.y[o][k]) * over),
-                            );
-                        }
-                    }
-                }
-                all
-            })
-            .collect()
-    }
-
-    /// Runs the method from several points at once.
-    fn run(&self, points: &[Vec<f64>], settings: Settings, most: usize) -> Vec<Levenberg> {
-        let mut fits: Vec<Levenberg> = points
-            .iter()
-            .map(|point| {
-                let start = |(u, &value): (&Unknown, &f64)| Unknown { start: value, ..*u };
-                Levenberg::new(self.unknowns.iter().zip(point).map(start).collect(), settings)
-            })
-            .collect();
-        loop {
-            let proposals: Vec<Vec<Vec<f64>>> = fits.iter_mut().map(Levenberg::propose).collect();
-            let all: Vec<Vec<f64>> = proposals.iter().flatten().cloned().collect();
-            if all.is_empty() || self.watch.stopped() {
-                return fits;
-            }
-            let mut answers = self.residuals(&all, most).into_iter();
-            for (fit, proposal) in fits.iter_mut().zip(&proposals) {
-                let own: Vec<_> = answers.by_ref().take(proposal.len()).collect();
-                if !proposal.is_empty() {
-                    fit.absorb(own);
-                }
-            }
-        }
     }
 }
