@@ -18,6 +18,7 @@ mod records;
 mod refusal;
 mod report;
 mod schema;
+mod verdicts;
 mod work;
 
 /// A model that takes a moment to simulate.

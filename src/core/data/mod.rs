@@ -31,6 +31,7 @@ mod matching;
 pub mod noise;
 mod npy;
 mod npz;
+mod open;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod periods;

@@ -8,5 +8,5 @@ mod simulate;
 
 pub use error::EvaluateError;
 pub use metric::Metrics;
-pub use run::{Run, drive, measured};
-pub use simulate::{Init, Simulation};
+pub use run::{Init, Run, drive, measured};
+pub use simulate::Simulation;
