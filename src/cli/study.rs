@@ -35,7 +35,8 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
         return exam::run(&document, config, args, seed, threads, look);
     }
     let study: MonteCarlo = document.read()?;
-    study.check()?;
+    let located = |error| Failure::from(error).in_file(config, &document, [""; 2]);
+    study.check().map_err(located)?;
     let (i, n) = args.shard.unwrap_or((1, 1));
     let jobs = study.share(i, n)?;
     let beside = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
