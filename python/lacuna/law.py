@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections import namedtuple
-from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence
+from typing import Any, Callable, Dict, List, Mapping, Optional, Sequence, Set
 
 import numpy as np
 
@@ -76,6 +76,8 @@ class Answers:
             raise CallError("no output function is given, and there are more outputs than states")
         #: Whether a function takes arrays; told by the first call.
         self.whole: Dict[str, bool] = {}
+        #: Functions that gave values once.
+        self.worked: Set[str] = set()
 
     def __call__(self, which: str, x: Any, u: Any, theta: Any, w: Any, t: float) -> Any:
         function, count = self.functions[which], x.shape[1] if x.size else max(u.shape[1], theta.shape[1])
@@ -103,16 +105,16 @@ class Answers:
             return values
 
         def points() -> Any:
-            """Instant by instant; one outside of the function's domain diverges, all of them are a fault."""
-            found, fault, done = np.full((self.rows[which], n), np.nan), None, 0
+            """Instant by instant: outside of its domain a function that has worked before diverges."""
+            found, fault = np.full((self.rows[which], n), np.nan), None
             finite = np.all([np.isfinite(rows).all(axis=0) for rows in (x, u, theta, w)], axis=0)
             for k in np.flatnonzero(finite):
                 try:
                     found[:, k] = point(int(k))
-                    done += 1
+                    self.worked.add(which)
                 except (ArithmeticError, ValueError) as error:
                     fault = error
-            if fault is not None and not done:
+            if fault is not None and which not in self.worked:
                 raise fault
             return found
 

@@ -221,7 +221,7 @@ def model_of(model: ModelLike) -> Model:
 def demo() -> Tuple[Model, Record, Record]:
     """Two masses between springs, and two records of a machine with something that the model lacks.
 
-    Gives the model, the record to diagnose (4000 samples at 0.1 s) and the one to test on.
+    Gives the model, the record to diagnose (3000 samples at 0.05 s) and the one to test on.
     """
     model, record, test = _demo()
     return Model(model), Record._of(record), Record._of(test)

@@ -76,9 +76,9 @@ def test_units_are_converted_or_refused(pendulum, torque):
 
 
 def test_missing_values_and_integers(pendulum):
-    frame = pd.DataFrame({"torque": pd.array([1, 2, None, 4] * 20, dtype="Int64"), "angle": np.arange(80)})
+    frame = pd.DataFrame({"torque": pd.array(([1] * 19 + [None]) * 4, dtype="Int64"), "angle": np.arange(80)})
     record = lacuna.Record(frame, sampling_time=0.02)
-    assert np.isnan(record["torque"][2]) and record["angle"][5] == 5.0
+    assert np.isnan(record["torque"][19]) and record["angle"][5] == 5.0
     assert lacuna.simulate(pendulum, record, init=0).outputs["angle"].shape == (80,)
 
 
@@ -103,7 +103,7 @@ def test_files_are_read_as_the_program_reads_them(tmp_path, torque):
     record = lacuna.Record(tmp_path / "a.npz")
     assert record.names == ["torque"] and record.sampling_time == 0.02 and len(record) == len(torque)
     packed = lacuna.Record(DEMO / "est.csv.gz")
-    assert len(packed) == 4000 and packed["time"][1] == pytest.approx(0.1)
+    assert len(packed) == 3000 and packed["time"][1] == pytest.approx(0.05)
     with pytest.raises(lacuna.InputError, match="cannot be read"):
         lacuna.Record(tmp_path / "none.csv")
     np.savez(tmp_path / "three.npz", u=np.zeros((3, 50, 1)), y=np.zeros((3, 50, 1)), Ts=0.1)

@@ -1,4 +1,4 @@
-"""The Python lines of the README and of the package's own run as they stand there."""
+"""The Python lines of the README, of the package's own and of the book run as they stand there."""
 
 import re
 from pathlib import Path
@@ -8,9 +8,10 @@ import pytest
 from conftest import ROOT
 
 matplotlib.use("Agg")
+PAGES = [ROOT / "README.md", ROOT / "python" / "README.md", ROOT / "docs" / "book" / "python.md"]
 
 
-@pytest.mark.parametrize("path", [ROOT / "README.md", ROOT / "python" / "README.md"], ids=["root", "package"])
+@pytest.mark.parametrize("path", PAGES, ids=["root", "package", "book"])
 def test_lines(path: Path, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     blocks = re.findall(r"```python\n(.*?)```", path.read_text(), re.S)

