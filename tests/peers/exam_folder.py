@@ -47,14 +47,21 @@ def numbers(text, exam):
     return found
 
 
-def simulate(lacuna, model, data, init=None):
-    """Columns that a model (a table) gives along a record, or None where it cannot."""
+def simulate(lacuna, model, case, measured=True):
+    """Columns that a model (a table) gives along a case's record, or None where it cannot.
+
+    Started from what was measured, or, where the model has other outputs, from its own start.
+    """
     with tempfile.TemporaryDirectory() as folder:
-        path, out = pathlib.Path(folder) / "model.json", pathlib.Path(folder) / "out.csv"
+        path, out, data = (pathlib.Path(folder) / name for name in ["model.json", "out.csv", "data.csv"])
         path.write_text(json.dumps(model))
-        call = [lacuna, "simulate", "--model", str(path), "--data", str(data), "--out", str(out), "--quiet",
-                "--threads", "1"]
-        call += [] if init is None else ["--init", str(init)]
+        names = ["time"] + case.file["inputs"] + (case.file["outputs"] if measured else [])
+        with open(data, "w", newline="") as file:
+            rows = csv.writer(file)
+            rows.writerow(names)
+            rows.writerows(zip(*(map(repr, case.record[name].tolist()) for name in names)))
+        call = [lacuna, "simulate", "--model", str(path), "--data", str(data), "--out", str(out), "--quiet"]
+        call += ["--threads", "1"] + ([] if measured else ["--init", "0"])
         if subprocess.run(call, capture_output=True).returncode:
             return None
         return columns(out)

@@ -64,23 +64,23 @@ def stacked(columns, names):
 def answer(case, lacuna):
     began = time.time()
     names = case.file["outputs"]
-    base = simulate(lacuna, case.model, case.path)
+    base = simulate(lacuna, case.model, case)
     if base is None:
         return None
     hats = [f"{name}_hat" for name in names]
     residual = stacked(case.record, names) - stacked(base, hats)
     coordinates = copy.deepcopy(case.model)
-    coordinates["model"]["equations"]["outputs"] += [
+    coordinates["model"]["equations"]["outputs"] = [
         {"name": f"seen_{c['name']}", "value": c["value"]} for c in case.equations().get("coordinates", [])
     ]
-    seen = simulate(lacuna, coordinates, case.path, 0) or {}
+    seen = simulate(lacuna, coordinates, case, False) or {}
     scales = {k[5:-4]: float(np.std(v)) or 1.0 for k, v in seen.items() if k.startswith("seen_")}
     scales |= {name: float(np.sqrt(np.mean(case.record[name] ** 2))) for name in names + case.file["inputs"]}
     library = []
     for name, model in candidates(case, scales):
         if name["effect"] in case.file["without"]:
             continue
-        moved = simulate(lacuna, model, case.path)
+        moved = simulate(lacuna, model, case)
         if moved is None:
             continue
         response = stacked(moved, hats) - stacked(base, hats)

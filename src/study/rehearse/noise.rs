@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn draws_have_colour_and_size_of_the_noise() {
         let e = noise::ar1(4000, 0.9, 0.3, 1).unwrap();
-        let noise = Resampled::of(&[e.clone()]);
+        let noise = Resampled::of(std::slice::from_ref(&e));
         assert!((1..=3).contains(&noise.order()), "{}", noise.order());
         let product = |e: &[f64], lag: usize| -> f64 {
             e.iter().zip(&e[lag..]).map(|(a, b)| a * b).sum::<f64>() / e.len() as f64
