@@ -35,7 +35,7 @@ mod structure;
 mod work;
 
 pub use block::{Baseline, Block, Learned};
-pub use closed_loop::{ClosedLoop, Controller};
+pub use closed_loop::{ClosedLoop, Controller, Replay};
 pub use error::LfrError;
 pub use interconnection::Interconnection;
 pub use matrix::{Entry, Matrix};
