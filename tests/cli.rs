@@ -5,6 +5,7 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
+mod book;
 mod calls;
 mod linear;
 mod lists;
@@ -17,7 +18,7 @@ mod plan;
 mod records;
 mod refusal;
 mod report;
-mod schema;
+pub mod schema;
 mod work;
 
 /// A model that takes a moment to simulate.

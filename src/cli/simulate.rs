@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use serde_json::{Map, Value, json};
-
 use super::args::Simulate;
 use super::console::{Console, print};
 use super::failure::Failure;
@@ -14,6 +12,7 @@ use lacuna::digits::number;
 use lacuna::evaluate::{Metrics, Simulation};
 use lacuna::fault::Place;
 use lacuna::likelihood::{NoiseModel, Predictor};
+use lacuna::report::documents;
 use lacuna::system::System;
 
 pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
@@ -58,18 +57,9 @@ pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
     if let Some(path) = args.out.as_ref().filter(|_| !piped) {
         look.say(&format!("Wrote {}", path.display()));
     }
-    let metrics: Map<String, Value> =
-        run.metrics.iter().map(|(name, metrics)| (name.clone(), json!(metrics))).collect();
-    let initial: Map<String, Value> =
-        run.initial_state.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
-    look.document(&json!({
-        "schema": 1,
-        "horizon": args.horizon,
-        "metrics": metrics,
-        "init_samples": run.init_samples,
-        "initial_state": initial,
-        "diverged_at": run.diverged_at,
-    }));
+    let mut document = documents::simulated(&run);
+    document["horizon"] = json!(args.horizon);
+    look.document(&document);
     Ok(0)
 }
 
