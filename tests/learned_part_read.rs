@@ -41,7 +41,7 @@ fn record(truth: &System, samples: usize, seed: u64) -> Record {
 fn fit(truth: &System, more: &str) -> (Fit, Record) {
     let records = [record(truth, 900, 1), record(truth, 400, 2)];
     let text = format!(
-        "structure = {{ hidden = [8] }}\nencoder.linear = {{ n_a = 5, n_b = 5 }}\n[training]\n\
+        "structure = {{ hidden = [8], into = [\"v\"] }}\nencoder.linear = {{ n_a = 5, n_b = 5 }}\n[training]\n\
          length = 20\nbatch = 100\nepochs = 10\nseed = 4\noptimiser = {{ rate = 5e-3 }}\n\
          validation = {{ lengths = [20], sections = 200 }}\n{more}\n\
          finish = {{ legs = 4, steps = 40 }}\n"
@@ -104,13 +104,19 @@ fn a_curve_is_a_law_of_the_library_or_has_no_name() {
     assert_eq!((law.parts.len(), &law.parts[0].effect[..]), (1, "coulomb_friction"));
     let knobs = law.parts[0].law.card().values();
     assert!((knobs[0] + 1.5).abs() < 0.01 && (knobs[1] - 0.2).abs() < 0.01, "{knobs:?}");
-    assert!(friction.share > 0.99 && law.probability > 0.5, "{law:?}");
+    assert!(friction.share > 0.99, "{law:?}");
+    // a bump of Stribeck's on top is as good as none: all that is left open is whether it is there
+    let dry: f64 = (friction.candidates.iter())
+        .filter(|c| c.parts.iter().any(|p| p.effect.ends_with("friction")))
+        .map(|c| c.probability)
+        .sum();
+    assert!(dry > 0.99, "{:?}", friction.candidates);
     let both = read(&|v| -1.5 * (v / 0.2).tanh() - 0.4 * v);
     let names: Vec<&str> =
         both.named().unwrap().parts.iter().map(|part| &part.effect[..]).collect();
     assert!(names.contains(&"coulomb_friction") && names.len() == 2, "{names:?}");
     // three humps are no law of a single speed
-    let humps = read(&|v| (4.0 * v).sin() / (1.0 + v * v));
+    let humps = read(&|v| (3.0 * v).sin() * (-0.5 * v * v).exp() + (1.3 * v).cos());
     assert!(humps.named().is_none(), "{:?}", humps.candidates[0]);
     assert!(humps.share > 0.95);
     // what depends on something else is said to

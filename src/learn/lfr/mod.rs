@@ -26,6 +26,7 @@ mod newton;
 mod number;
 mod order;
 mod program;
+mod reach;
 mod rows;
 mod sampled;
 mod signal;
