@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde_json::json;
+
 use super::args::Simulate;
 use super::console::{Console, print};
 use super::failure::Failure;
