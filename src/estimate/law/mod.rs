@@ -179,5 +179,10 @@ fn may_be(law: &dyn CandidateEffect, coordinate: &Signal, view: &View) -> bool {
         Needs::AngleOrTime => coordinate.unit == "rad",
         Needs::CoordinateWithRate | Needs::Motion | Needs::Time => false,
     };
-    needs && card.mechanism == Mechanism::Law && card.states == 0 && !card.knobs.is_empty()
+    // what may stand in a channel: a gain of a path is a linear law there
+    needs
+        && card.places.channel
+        && card.mechanism == Mechanism::Law
+        && card.states == 0
+        && !card.knobs.is_empty()
 }
