@@ -15,9 +15,9 @@ use crate::system::{Origin, Route};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Method {
     /// One cause after the other, by scores on the part that chooses.
-    #[default]
     Stepwise,
     /// Sets of causes by their posterior probability.
+    #[default]
     Posterior,
 }
 

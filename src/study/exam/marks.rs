@@ -20,7 +20,7 @@ pub enum Hit {
     Missed,
     /// It stands among what a cause cannot be told from.
     InSet,
-    /// It heads a cause.
+    /// It heads a cause, or is a part of one.
     Exact,
 }
 
@@ -42,7 +42,7 @@ pub struct Marks {
     pub hits: Vec<Hit>,
     /// Whether the first cause holds one of the hidden effects.
     pub first: bool,
-    /// Headlines of the causes, short; faults of the data left out.
+    /// Laws of the causes, short; faults of the data left out.
     pub found: Vec<String>,
     /// The others of the first one's set, short.
     pub beside: Vec<String>,
@@ -72,8 +72,15 @@ fn beside(cause: &Cause) -> Vec<String> {
     others.map(|other| short(&other.effect, &other.into, other.of.as_deref())).collect()
 }
 
+/// Its laws, short: one of a plain law, several of a sum at one place.
+fn laws(cause: &Cause) -> Vec<String> {
+    let parts = cause.parts.iter();
+    let laws = parts.map(|part| short(&part.effect, &cause.into, cause.of.as_deref()));
+    std::iter::once(headline(cause)).chain(laws.filter(|law| *law != headline(cause))).collect()
+}
+
 fn hit(cause: &Cause, name: &str) -> Hit {
-    match headline(cause) == name {
+    match laws(cause).iter().any(|law| law == name) {
         true => Hit::Exact,
         false if beside(cause).iter().any(|other| other == name) => Hit::InSet,
         false => Hit::Missed,
@@ -93,7 +100,9 @@ fn covers(cause: &Cause, truth: &Placed) -> Vec<bool> {
     let card = truth.effect.card();
     let mut inside = vec![];
     for (knob, value) in card.knobs.iter().zip(card.values()) {
-        let known = cause.parameters.iter().find(|p| p.name == knob.name);
+        let own = cause.parts.iter().find(|part| part.effect == truth.effect.typetag_name());
+        let parameters = own.map_or(&cause.parameters, |part| &part.parameters);
+        let known = parameters.iter().find(|p| p.name == knob.name);
         if let Some((of, error)) = known.and_then(|p| Some((p, p.std_error?))) {
             inside.push((of.value - value).abs() <= WIDE * error);
         }
@@ -140,7 +149,7 @@ impl Marks {
             case: case.clone(),
             system: machine.name(),
             first: causes.first().is_some_and(|c| hidden.iter().any(|n| hit(c, n) > Hit::Missed)),
-            found: causes.iter().map(|c| headline(c)).collect(),
+            found: causes.iter().flat_map(|c| laws(c)).collect(),
             beside: causes.first().map_or(vec![], |c| beside(c)),
             verdict: verdict(finding.verdict).into(),
             gain_covered: removed
