@@ -44,7 +44,7 @@ fn fit(truth: &System, of: &str, more: &str) -> (Fit, Record) {
         "structure = {{ hidden = [8], into = [\"v\"], of = [\"{of}\"] }}\nencoder.linear = {{ n_a = 5, n_b = 5 }}\n[training]\n\
          length = 20\nbatch = 100\nepochs = 10\nseed = 4\n\
          validation = {{ lengths = [20], sections = 200 }}\n{more}\n\
-         finish = {{ legs = 4, steps = 40 }}\n"
+         finish = {{ legs = 3, steps = 250 }}\n"
     );
     let recipe: Recipe = toml::from_str(&text).unwrap();
     let (start, _) = recipe.start(&system(MODEL), &records[..1], 0).unwrap();
@@ -55,10 +55,10 @@ fn fit(truth: &System, of: &str, more: &str) -> (Fit, Record) {
 
 #[test]
 fn a_learned_term_is_read_as_the_law_that_was_hidden() {
-    let hidden =
-        "[[effects]]\ninto = \"force\"\nof = \"p\"\neffect.cubic = { coefficient = -90.0 }\n";
-    let (fit, record) =
-        fit(&system(&format!("{MODEL}{hidden}")), "p", "optimiser = { rate = 5e-3 }");
+    let hidden = "[[effects]]\ninto = \"force\"\nof = \"v\"\n\
+                  effect.coulomb_friction = { level = -3.0, width = 0.3 }\n";
+    let truth = system(&format!("{MODEL}{hidden}"));
+    let (fit, record) = fit(&truth, "v", "optimiser = { rate = 5e-3 }");
     let found = fit.model.added(&record).unwrap().unwrap();
     let force = &found.channels[0];
     assert_eq!(force.channel.name, "force");
@@ -78,10 +78,18 @@ fn a_learned_term_is_read_as_the_law_that_was_hidden() {
         .collect();
     read.sort_by(|a, b| b.1.share.total_cmp(&a.1.share));
     let (name, reading) = &read[0];
-    assert_eq!(*name, "p");
-    let law = reading.named().unwrap_or_else(|| panic!("{reading:?}"));
-    assert!(law.parts.iter().any(|part| part.effect == "cubic"), "{law:?}");
-    assert!(law.share > 0.95, "{law:?}");
+    assert_eq!(*name, "v");
+    // of the laws that have a name; a curve as it was learned is none of them to the last digit
+    let law = reading.candidates.iter().find(|law| !law.parts.is_empty()).unwrap();
+    assert!(law.parts.iter().any(|part| part.effect.ends_with("friction")), "{law:?}");
+    assert!(law.share > 0.99, "{law:?}");
+    // the curve itself against the hidden one, in the inner three quarters of where the record has
+    // been
+    let (bins, hidden) = (reading.curve.len(), |v: f64| -3.0 * (v / 0.3).tanh());
+    let inner = &reading.curve[bins / 8..bins - bins / 8];
+    let size: f64 = inner.iter().map(|drawn| hidden(drawn.z).powi(2)).sum();
+    let off: f64 = inner.iter().map(|drawn| (drawn.w - hidden(drawn.z)).powi(2)).sum();
+    assert!((off / size).sqrt() < 0.1, "{}", (off / size).sqrt());
     // the model's own law of the same coordinate: the spring
     let position = found.coordinates.iter().find(|c| c.signal.name == "p").unwrap();
     let &(z, w) = position.own.last().unwrap();

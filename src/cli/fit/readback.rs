@@ -70,7 +70,15 @@ impl ReadBack {
                 number(law.probability, None),
                 percent(law.share)
             ),
-            None => write!(text, ": a curve of `{of}` without a name in the library."),
+            None => match reading.candidates.iter().find(|law| !law.parts.is_empty()) {
+                None => write!(text, ": a curve of `{of}` without a name in the library."),
+                Some(nearest) => write!(
+                    text,
+                    ": a curve of `{of}` without a name in the library; nearest is {} ({} of it).",
+                    named(nearest),
+                    percent(nearest.share)
+                ),
+            },
         };
         text
     }
