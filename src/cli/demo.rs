@@ -32,5 +32,7 @@ pub fn run(args: &Demo, seed: u64, look: &Console) -> Result<u8, Failure> {
         .embedded("data", "demo/est.csv.gz", EST)
         .embedded("test", "demo/test.csv.gz", TEST);
     let title = "a mass-spring-damper";
-    look_for(&diagnosis, &records, Some(&test), Results { title, out: &args.out, from }, look)
+    let rehearse = (args.rehearse, (1, 1));
+    let results = Results { title, out: &args.out, from, rehearse };
+    look_for(&diagnosis, &records, Some(&test), results, look)
 }

@@ -10,10 +10,11 @@ use super::no_model::Asked;
 use super::outputs::{self, cannot_write};
 use super::{input, provenance, reported};
 use lacuna::data::Record;
-use lacuna::diagnose::{Diagnosis, Finding, Planner};
+use lacuna::diagnose::{Diagnosis, Finding, Planner, Watch};
 use lacuna::estimate::linear_baseline;
 use lacuna::file::{save_with, write_text};
 use lacuna::report::{Beside, Document, Provenance, Report, sentences};
+use lacuna::study::{Rehearsal, Rehearsed};
 use lacuna::system::System;
 
 /// Files that a diagnosis leaves in its folder.
@@ -29,6 +30,8 @@ pub struct Results<'a> {
     pub title: &'a str,
     pub out: &'a Path,
     pub from: Provenance,
+    /// How many rehearsals, and which share of them.
+    pub rehearse: (usize, (usize, usize)),
 }
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
@@ -87,7 +90,8 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
         Some(path) => path.display().to_string(),
         None => "a linear model of the record".into(),
     };
-    let results = Results { title: &title, out: &args.out, from };
+    let rehearse = (args.rehearse, args.shard.unwrap_or((1, 1)));
+    let results = Results { title: &title, out: &args.out, from, rehearse };
     finish(&diagnosis, &records, test.as_ref(), results, look)
 }
 
@@ -137,9 +141,14 @@ fn finish(
     results: Results<'_>,
     look: &Console,
 ) -> Result<u8, Failure> {
-    let Results { title, out, from } = results;
+    let Results { title, out, from, rehearse } = results;
+    if rehearse.0 > 0 {
+        look.part(0.0, 0.05);
+    }
     let finding = diagnosis.run(records, test, look)?;
     let outlook = Planner::for_look_alikes(&finding, diagnosis.system(), records, look);
+    look.part(0.05, 1.0);
+    let rehearsed = rehearsed(diagnosis, &finding, records, (rehearse, from.seed), out, look)?;
     look.clear();
     let headline = sentences::headline(&finding);
     let mut header = vec!["Written by `lacuna diagnose`.".to_string()];
@@ -149,24 +158,53 @@ fn finish(
     if let Some(outlook) = &outlook {
         report = report.outlook(outlook);
     }
-    reported::write(&report.page(), out, PAGE)?;
+    let mut page = report.page();
     let beside = Beside { extended_model: MODEL, report: PAGE };
-    let document = Document::of(&finding, beside, &from).text().map_err(Failure::unwritable)?;
+    let mut document = Document::of(&finding, beside, &from);
+    if let Some(rehearsed) = &rehearsed {
+        rehearsed.section(&mut page);
+        document = document.with("rehearsal", rehearsed).map_err(Failure::unwritable)?;
+    }
+    reported::write(&page, out, PAGE)?;
+    let document = document.text().map_err(Failure::unwritable)?;
     let json = out.join(DOCUMENT);
     write_text(&json, &document).map_err(|error| cannot_write(&json, &error))?;
-    tell(&finding, out, look);
+    tell(&finding, rehearsed.as_ref(), out, look);
     if look.json {
         print(&document);
     }
     Ok(0)
 }
 
-fn tell(finding: &Finding, out: &Path, look: &Console) {
+/// Rehearses what was found, where that is asked for.
+fn rehearsed(
+    diagnosis: &Diagnosis<'_>,
+    finding: &Finding,
+    records: &[Record],
+    ((count, shard), seed): ((usize, (usize, usize)), u64),
+    out: &Path,
+    look: &Console,
+) -> Result<Option<Rehearsed>, Failure> {
+    if count == 0 || look.stopped() {
+        return Ok(None);
+    }
+    let rehearsal = Rehearsal::of(diagnosis, finding, records, seed)?;
+    let done = rehearsal.run(count, shard, out, look)?;
+    if done < count {
+        look.say(&format!(
+            "{done} of {count} rehearsals are done; the same call without --shard does the rest."
+        ));
+    }
+    Ok(Some(rehearsal.told(count, out)?))
+}
+
+fn tell(finding: &Finding, rehearsed: Option<&Rehearsed>, out: &Path, look: &Console) {
     if finding.interrupted {
         look.result("Interrupted: this is what was known.");
     }
     look.headline(&sentences::headline(finding));
-    for line in sentences::details(finding) {
+    let rehearsed = rehearsed.map(Rehearsed::sentences).unwrap_or_default();
+    for line in sentences::details(finding).into_iter().chain(rehearsed) {
         look.result(&line);
     }
     look.introduce(&format!(
