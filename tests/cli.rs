@@ -19,6 +19,7 @@ mod records;
 mod refusal;
 mod report;
 pub mod schema;
+mod verdicts;
 mod work;
 
 /// A model that takes a moment to simulate.

@@ -70,7 +70,9 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let available = || std::thread::available_parallelism().map_or(1, usize::from);
     recipe.training.threads = threads.unwrap_or_else(available);
     look.hear_interrupts()?;
-    let (start, started) = recipe.start(&system, &records, recipe.training.seed)?;
+    let located = |error| Failure::from(error).in_file(&args.config, &document, [""; 2]);
+    let begun = recipe.start(&system, &records, recipe.training.seed);
+    let (start, started) = begun.map_err(located)?;
     // what cannot be saved is better known before the work than after it
     AugmentedModel::new(start.model.clone()).into_system()?;
     look.say(&started.to_string());

@@ -2,12 +2,9 @@
 
 use serde::Serialize;
 
-use super::candidate::{Candidate, Wire};
-use super::curves::source_of;
-use super::nominal::Nominal;
-use super::problem::{Added, Grain, Model, Part, Problem};
+use super::coordinate::along;
+use super::problem::{Grain, Model};
 use super::teller::Teller;
-use crate::effect::curve;
 
 /// An effect acts where it is beyond this share of its largest value,
 const ACTS: f64 = 0.05;
@@ -47,26 +44,27 @@ pub struct ActsWhere {
 }
 
 impl Teller<'_, '_> {
-    /// Whether a law with a bend is a straight line in nearly all of the record.
-    pub fn is_straight(&self, model: &Model, index: usize) -> bool {
-        let Added { cause, knobs } = &model.added[index];
+    /// Whether laws of one place with a bend are a straight line in nearly all of the record.
+    pub fn is_straight(&self, model: &Model, own: &[usize]) -> bool {
+        let bends = |&i: &usize| model.added[i].cause.card.properties.piecewise_linear;
+        let cause = &model.added[own[0]].cause;
         let z = along(self.problem, self.nominal, model, cause, Grain::Fine);
-        let Some(mut z) = z.filter(|_| cause.card.properties.piecewise_linear) else {
+        let Some(mut z) = z.filter(|_| own.iter().all(bends)) else {
             return false;
         };
         z.sort_by(f64::total_cmp);
         let outer = (OUTERMOST * z.len() as f64) as usize;
         let z = &z[outer..z.len() - outer];
-        is_line(z, &curve(cause.shape.as_ref(), knobs, z))
+        is_line(z, &model.sum(own, self.problem.step(Grain::Fine), z))
     }
 
-    /// In which part of its coordinate's range a cause of a model acts.
-    pub fn acts_where(&self, model: &Model, index: usize) -> Option<ActsWhere> {
-        let Added { cause, knobs } = &model.added[index];
+    /// In which part of their coordinate's range laws of one place act.
+    pub fn acts_where(&self, model: &Model, own: &[usize]) -> Option<ActsWhere> {
+        let cause = &model.added[own[0]].cause;
         let problem = self.problem;
         let counted = along(problem, self.nominal, model, cause, Grain::Fine)?;
-        let knobs = cause.clipped(knobs, problem.step(Grain::Fine));
-        let part = part(&counted, &|z| curve(cause.shape.as_ref(), &knobs, z))?;
+        let step = problem.step(Grain::Fine);
+        let part = part(&counted, &|z| model.sum(own, step, z))?;
         Some(ActsWhere {
             of: cause.of.clone()?,
             unit: cause.units.1.clone(),
@@ -75,28 +73,6 @@ impl Teller<'_, '_> {
             share_of_time: part.share,
         })
     }
-}
-
-/// A law's coordinate along the record, where samples count; `None` where it is no curve of one.
-pub(super) fn along(
-    problem: &Problem<'_>,
-    nominal: &Nominal,
-    model: &Model,
-    cause: &Candidate,
-    grain: Grain,
-) -> Option<Vec<f64>> {
-    let source = source_of(problem, cause)?;
-    let z: Vec<f64> = match cause.wire {
-        // on a path, the coordinate is what goes into it
-        Wire::Path => nominal.series(source).to_vec(),
-        _ => {
-            let job = problem.job(model, grain)?;
-            let run = problem.system.run_seen(&job.plan, &problem.drive, &job.lane);
-            run.seen.into_iter().nth(source)?
-        }
-    };
-    let counted = problem.samples(Part::All).filter_map(|k| z.get(k).copied());
-    Some(counted.filter(|v| v.is_finite()).collect())
 }
 
 /// Whether values over an ascending coordinate lie on a line that is not zero.

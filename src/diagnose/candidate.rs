@@ -1,6 +1,6 @@
 //! One supposed cause: an effect at a place, with what is free in it.
 
-use crate::effect::{CandidateEffect, EffectCard, Named, Role, ShapeOf};
+use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Role, ShapeOf};
 use crate::system::{AlsoInto, Placed, Route};
 
 /// Natural logarithms of the number of causes to choose from, and of the values that a record
@@ -90,10 +90,19 @@ impl Candidate {
         self.triple() == other.triple() && self.also_of == other.also_of
     }
 
-    /// Whether two candidates stand at the same place: the same channel and coordinate, both laws.
+    /// Whether two candidates stand at the same place: the same channels and coordinate, both laws of
+    /// what is there at that instant.
     pub fn same_place(&self, other: &Self) -> bool {
-        let is_law = |c: &Self| matches!(c.wire, Wire::Stage(_)) && c.of.is_some();
-        is_law(self) && is_law(other) && self.into == other.into && self.of == other.of
+        let is_law =
+            |c: &Self| c.card.mechanism == Mechanism::Law && c.of.is_some() && !c.is_known_limit();
+        let channels = |c: &Self| -> Vec<String> {
+            c.also_into.iter().map(|also| also.channel().to_string()).collect()
+        };
+        is_law(self)
+            && is_law(other)
+            && self.into == other.into
+            && self.coordinates() == other.coordinates()
+            && channels(self) == channels(other)
     }
 
     /// Whether it is blended in by a factor from 0 to 1, having no coefficient.

@@ -68,12 +68,15 @@ pub enum Site {
 }
 
 /// One law of a cause that is a sum of several.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct LawPart {
     /// Effect.
     pub effect: String,
     /// Its numbers.
     pub parameters: Vec<Value>,
+    /// What sentences need.
+    #[serde(skip)]
+    pub wording: Wording,
 }
 
 /// When a cause begins within the record.
@@ -179,9 +182,9 @@ pub struct Cause {
     pub also_into: Vec<String>,
     /// Further coordinates that it depends on.
     pub also_of: Vec<String>,
-    /// Its numbers.
+    /// Its numbers; those of the largest part of a sum.
     pub parameters: Vec<Value>,
-    /// The laws that it is a sum of: one for a plain law.
+    /// The laws that it is a sum of, the largest first: one for a plain law.
     pub parts: Vec<LawPart>,
     /// Probability of as large a share without it, valid although it was chosen among many: from
     /// data that it was neither fitted to nor chosen on. `None` where no test was made.
@@ -224,6 +227,12 @@ impl Cause {
     /// Whether it is a parameter of the model with another value.
     pub fn is_parameter(&self) -> bool {
         self.wording.site == Site::Parameter
+    }
+
+    /// Whether an effect at a place is this cause or a part of it.
+    pub fn holds(&self, effect: &str, into: &str, of: Option<&str>) -> bool {
+        let own = self.effect == effect || self.parts.iter().any(|part| part.effect == effect);
+        own && self.into == into && self.of.as_deref() == of
     }
 
     /// Effect, channel and coordinate, as the keys of a model file name them.

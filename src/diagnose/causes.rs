@@ -9,10 +9,11 @@ use super::error::DiagnoseError;
 use super::finished::Finished;
 use super::floor::Floor;
 use super::naming::title_of;
-use super::problem::Grain;
+use super::problem::{Added, Grain};
 use super::profile;
 use super::score::{Scored, TestData, removed};
 use super::sets::SET;
+use super::sums::by_size;
 use super::teller::Teller;
 
 /// Spikes below this number and this share are chance.
@@ -36,25 +37,25 @@ pub(crate) struct Scores<'a> {
 impl Teller<'_, '_> {
     /// The causes that were added to the model, then the parameters that moved.
     pub fn causes(&self, chosen: &Finished, by: &Scores<'_>) -> Result<Vec<Cause>, DiagnoseError> {
-        let added = (0..chosen.causes()).map(|index| self.added(chosen, index, by));
-        let mut causes = added.collect::<Result<Vec<_>, _>>()?;
+        let places = chosen.fitted.model.places().into_iter();
+        let at_place = |own| self.at_place(chosen, own, by);
+        let mut causes = places.map(at_place).collect::<Result<Vec<_>, _>>()?;
         causes.extend(self.moved(chosen, by)?);
         Ok(causes)
     }
 
-    fn added(
+    /// The laws of one place as one cause.
+    fn at_place(
         &self,
         chosen: &Finished,
-        index: usize,
+        own: Vec<usize>,
         by: &Scores<'_>,
     ) -> Result<Cause, DiagnoseError> {
         let model = &chosen.fitted.model;
-        let cause = &model.added[index].cause;
-        let knobs = &model.added[index].knobs;
-        let slot = &chosen.found.slots[index];
-        let only = model.added.len() == 1 && chosen.moved.is_empty();
-        let bare =
-            (by.several || !only).then(|| self.refitted(chosen, &model.without(index))).flatten();
+        let only = model.added.len() == own.len() && chosen.moved.is_empty();
+        let bare = (by.several || !only)
+            .then(|| self.refitted(chosen, &model.without_all(&own)))
+            .flatten();
         let without = match bare.as_ref().filter(|_| !only) {
             Some(bare) => Some(by.test.score(&self.extend(bare)?)?),
             None => None,
@@ -63,39 +64,27 @@ impl Teller<'_, '_> {
         let share = removed(by.before, without, by.after, by.floors);
         let screen = chosen.found.first.as_ref().or(chosen.found.last.as_ref());
         let candidates = screen.map_or(MANY, |screen| screen.columns);
-        let p_value = Some(either(on_test(without, by.after), slot.score, candidates));
-        // the weights of a learned law stand in the extended model; no number of them says anything
-        let values = match cause.is_learned() {
-            true => vec![],
-            false => self.values(chosen, index),
-        };
+        // all of them together do no less than one of them
+        let score = own.iter().map(|&i| chosen.found.slots[i].score).fold(0.0, f64::max);
+        let p_value = Some(either(on_test(without, by.after), score, candidates));
+        let own = by_size(self.problem, self.nominal, model, own);
+        let mut parts: Vec<LawPart> = own.iter().map(|&i| self.part(chosen, i)).collect();
+        let (cause, slot) = (&model.added[own[0]].cause, &chosen.found.slots[own[0]]);
+        let values = parts[0].parameters.clone();
         if cause.is_known_limit() {
             return Ok(self.clipping(cause, values, share, p_value, by.firsts));
         }
-        let nominal = match cause.wire {
-            Wire::Parameter(p) | Wire::Drift(p) => {
-                Some(self.problem.base.signals.parameters[p].value)
-            }
-            _ => None,
-        };
-        let (indistinguishable, runners_up) = alternatives(cause, slot, share);
+        let laws: Vec<_> = own.iter().map(|&i| model.added[i].cause.name()).collect();
+        let (indistinguishable, runners_up) = alternatives(cause, slot, share, laws);
         let records = bare.filter(|_| by.several).and_then(|bare| self.shown(&bare, &chosen.y));
-        let acts_where = self.acts_where(model, index);
-        let wording = Wording {
-            shape: cause.is_drawn().then(|| match cause.is_learned() {
-                true => self.found_law(model, index),
-                false => self.found_curve(cause, knobs),
-            }),
-            is_line_here: acts_where.is_none() && self.is_straight(model, index),
-            ..cause.wording(nominal)
-        };
+        let acts_where = self.acts_where(model, &own);
+        parts[0].wording.is_line_here = acts_where.is_none() && self.is_straight(model, &own);
         Ok(Cause {
             effect: cause.effect.into(),
             into: cause.into.clone(),
             of: cause.of.clone(),
             also_into: cause.also_into.iter().map(|a| a.channel().to_string()).collect(),
             also_of: cause.also_of.clone(),
-            parts: cause.as_part(&values),
             parameters: values,
             p_value,
             probability: slot.belief.as_ref().map(|belief| belief.law),
@@ -107,8 +96,31 @@ impl Teller<'_, '_> {
             acts_where,
             records,
             rows: None,
-            wording,
+            wording: parts[0].wording.clone(),
+            parts,
         })
+    }
+
+    /// One law with its numbers and what sentences need.
+    fn part(&self, chosen: &Finished, index: usize) -> LawPart {
+        let model = &chosen.fitted.model;
+        let Added { cause, knobs } = &model.added[index];
+        // the weights of a learned law stand in the extended model; no number of them says anything
+        let values = match cause.is_learned() {
+            true => vec![],
+            false => self.values(chosen, index),
+        };
+        let nominal = match cause.wire {
+            Wire::Parameter(p) | Wire::Drift(p) => {
+                Some(self.problem.base.signals.parameters[p].value)
+            }
+            _ => None,
+        };
+        let shape = cause.is_drawn().then(|| match cause.is_learned() {
+            true => self.found_law(model, index),
+            false => self.found_curve(cause, knobs),
+        });
+        LawPart { wording: Wording { shape, ..cause.wording(nominal) }, ..cause.as_part(&values) }
     }
 
     /// Readings that were cut off by the instrument. The extended model has its limits, as a
@@ -207,7 +219,11 @@ pub(crate) fn of_column(
     Cause {
         effect: effect.into(),
         into: into.into(),
-        parts: vec![LawPart { effect: effect.into(), parameters: parameters.clone() }],
+        parts: vec![LawPart {
+            effect: effect.into(),
+            parameters: parameters.clone(),
+            ..LawPart::default()
+        }],
         parameters,
         rows: Some(rows),
         wording: Wording {
@@ -220,11 +236,12 @@ pub(crate) fn of_column(
     }
 }
 
-/// What cannot be told from a cause that removes this share, and what comes next.
+/// What cannot be told from a cause that removes this share, and what comes next; `known`: its own laws.
 fn alternatives(
     cause: &Arc<Candidate>,
     slot: &super::found::Slot,
     share: f64,
+    mut known: Vec<(String, String, Option<String>)>,
 ) -> (Vec<Alternative>, Vec<Alternative>) {
     // what holds of the headline's place holds of its twins', and need not be said again
     let twins = cause.twins.iter().map(|(into, of, _)| Alternative {
@@ -239,7 +256,6 @@ fn alternatives(
     let member = |(own, probability)| Alternative { probability, ..as_data(own) };
     // other laws before twins: where there are too many, twins are missed least
     let mut alike: Vec<Alternative> = members.map(member).chain(twins).collect();
-    let mut known = vec![cause.name()];
     alike.retain(|a: &Alternative| {
         let name = (a.effect.clone(), a.into.clone(), a.of.clone());
         let new = !known.contains(&name);

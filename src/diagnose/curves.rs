@@ -3,12 +3,12 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::candidate::{Candidate, Wire};
+use super::coordinate::source_of;
 use super::finding::Curve;
 use super::nominal::Nominal;
 use super::nuisance::Nuisance;
 use super::problem::{Grain, Job, Model, Part, Problem, Span};
-use crate::effect::{Mechanism, View, curve};
+use crate::effect::View;
 use crate::plugins::effects::free_form::FreeForm;
 use crate::statistics::{dot, project};
 use crate::system::Placed;
@@ -25,9 +25,12 @@ pub(crate) fn curves(
     nuisance: &Nuisance,
     model: &Model,
 ) -> Vec<Curve> {
-    (0..model.added.len())
-        .filter_map(|index| {
-            let cause = &model.added[index].cause;
+    model
+        .places()
+        .iter()
+        .enumerate()
+        .filter_map(|(place, own)| {
+            let cause = &model.added[own[0]].cause;
             let source = source_of(problem, cause)?;
             let view = View::new(nominal.series(source), problem.base.sampling_time);
             let (low, high) = (view.quantile(0.002), view.quantile(0.998));
@@ -36,10 +39,10 @@ pub(crate) fn curves(
             }
             let at = |i: usize| low + (high - low) * i as f64 / (POINTS - 1) as f64;
             let z: Vec<f64> = (0..POINTS).map(at).collect();
-            let law = curve(cause.shape.as_ref(), &model.added[index].knobs, &z);
-            let knots = free_curve(problem, nuisance, model, index, &view).unwrap_or_default();
+            let law = model.sum(own, problem.step(Grain::Fine), &z);
+            let knots = free_curve(problem, nuisance, model, own, &view).unwrap_or_default();
             Some(Curve {
-                cause: index,
+                cause: place,
                 coordinate: (cause.of.clone()?, cause.units.1.clone()),
                 channel: (cause.into.clone(), cause.units.0.clone()),
                 law: z.into_iter().zip(law).collect(),
@@ -50,32 +53,20 @@ pub(crate) fn curves(
         .collect()
 }
 
-/// The source entry of a cause that is a curve of one coordinate.
-pub(super) fn source_of(problem: &Problem<'_>, cause: &Candidate) -> Option<usize> {
-    let is_curve = cause.card.mechanism == Mechanism::Law
-        && cause.card.states == 0
-        && cause.also_of.is_empty();
-    let of = cause.of.as_deref().filter(|of| is_curve && *of != "time")?;
-    match cause.wire {
-        Wire::Stage(_) | Wire::Path => problem.base.sources.find(of),
-        _ => None,
-    }
-}
-
-/// Value and standard error at every knot of a curve of unknown shape in place of one cause,
+/// Value and standard error at every knot of a curve of unknown shape instead of the laws of one place,
 /// by least squares on the linearised model.
 fn free_curve(
     problem: &Problem<'_>,
     nuisance: &Nuisance,
     model: &Model,
-    index: usize,
+    own: &[usize],
     view: &View,
 ) -> Option<Vec<(f64, f64, f64)>> {
-    let cause = model.added[index].cause.clone();
+    let cause = model.added[own[0]].cause.clone();
     let mut knots: Vec<f64> =
         (0..KNOTS).map(|i| view.quantile(0.002 + 0.996 * i as f64 / (KNOTS - 1) as f64)).collect();
     knots.dedup_by(|a, b| (*a - *b).abs() < 1e-3 * view.range());
-    let law = curve(cause.shape.as_ref(), &model.added[index].knobs, &knots);
+    let law = model.sum(own, problem.step(Grain::Fine), &knots);
     let size = law.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     if !(size > 0.0) || knots.len() < 4 {
         return None;
@@ -83,7 +74,7 @@ fn free_curve(
     // around the law that was found, in its own place
     let job = |values: &[f64]| -> Option<Job> {
         let shape = FreeForm { knots: knots.clone(), values: values.to_vec() };
-        let others = model.without(index);
+        let others = model.without_all(own);
         let mut job = problem.job(&others, Grain::Coarse)?;
         let mut placed: Vec<Placed> =
             others.added.iter().filter_map(|a| a.cause.placed(&a.knobs)).collect();
@@ -107,7 +98,7 @@ fn free_curve(
     let runs = problem.run(&jobs, Span::Fit);
     let now = problem.residual(runs[0].as_ref()?, Part::Fit);
     let y0 = runs[0].clone()?;
-    let basis = nuisance.basis(problem, &model.without(index), &y0);
+    let basis = nuisance.basis(problem, &model.without_all(own), &y0);
     let mut left = now.clone();
     project(&basis, &mut left);
     let mut columns = vec![];

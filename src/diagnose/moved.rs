@@ -55,7 +55,11 @@ impl Teller<'_, '_> {
                 of: None,
                 also_into: vec![],
                 also_of: vec![],
-                parts: vec![LawPart { effect: effect.into(), parameters: vec![value.clone()] }],
+                parts: vec![LawPart {
+                    effect: effect.into(),
+                    parameters: vec![value.clone()],
+                    ..LawPart::default()
+                }],
                 wording: Wording {
                     title: title_of(effect),
                     site: Site::Parameter,

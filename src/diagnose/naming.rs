@@ -49,9 +49,10 @@ impl Candidate {
         }
     }
 
-    /// It as the one part of a law that is no sum.
-    pub fn as_part(&self, parameters: &[Value]) -> Vec<LawPart> {
-        vec![LawPart { effect: self.effect.into(), parameters: parameters.to_vec() }]
+    /// It as a part of a cause.
+    pub fn as_part(&self, parameters: &[Value]) -> LawPart {
+        let wording = self.wording(None);
+        LawPart { effect: self.effect.into(), parameters: parameters.to_vec(), wording }
     }
 }
 

@@ -213,6 +213,7 @@ fn slices(problem: &Problem<'_>, nominal: &Nominal, model: &Model) -> Vec<Curve>
         let source = problem.base.sources.find(of)?;
         Some((View::new(nominal.series(source), problem.base.sampling_time), source))
     };
+    let places = model.places();
     let picture = |(index, added): (usize, &Added)| {
         let [of, also] = added.cause.coordinates()[..] else { return None };
         let law = network(added.cause.placed(&added.knobs)?.effect.as_ref())?;
@@ -227,7 +228,7 @@ fn slices(problem: &Problem<'_>, nominal: &Nominal, model: &Model) -> Vec<Curve>
             (words.trim_end().to_string(), points.collect())
         };
         Some(Curve {
-            cause: index,
+            cause: places.iter().position(|own| own.contains(&index))?,
             coordinate: (of.into(), added.cause.units.1.clone()),
             channel: (added.cause.into.clone(), added.cause.units.0.clone()),
             slices: SLICES.map(slice).to_vec(),

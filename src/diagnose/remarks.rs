@@ -64,14 +64,21 @@ impl Teller<'_, '_> {
         if chosen.is_doubting() {
             notes.push(Note::AllParametersDoubted { prior: super::nuisance::PRIOR });
         }
-        // causes begin with those that were added to the model
-        for (added, cause) in model.added.iter().zip(causes) {
-            let card = &added.cause.card;
-            let smooth = card.properties.smoothing_width;
-            let width = cause.parameters.iter().find(|v| smooth == Some(v.name.as_str()));
+        // causes begin with those that were added to the model, place by place
+        let places = model.places();
+        let parts = places.iter().zip(causes).flat_map(|(own, cause)| {
+            let of = |&i: &usize| model.added[i].cause.clone();
+            own.iter().map(of).filter_map(move |law| {
+                let part = cause.parts.iter().find(|part| part.effect == law.effect)?;
+                Some((law, part))
+            })
+        });
+        for (law, part) in parts {
+            let smooth = law.card.properties.smoothing_width;
+            let width = part.parameters.iter().find(|v| smooth == Some(v.name.as_str()));
             if let Some(width) = width.filter(|w| w.std_error.is_none_or(|e| e > 0.5 * w.value)) {
                 notes.push(Note::WidthUnresolved {
-                    into: cause.into.clone(),
+                    into: law.into.clone(),
                     at_most: width.value + 2.0 * width.std_error.unwrap_or(0.0),
                     unit: width.unit.clone(),
                 });
@@ -83,7 +90,10 @@ impl Teller<'_, '_> {
                 && cause.card.properties.smoothing_width.is_some()
                 && keeps_its_sign(self.nominal.series(route.source))
             {
-                notes.push(Note::KeepsItsSign { into: cause.into.clone(), of: cause.of.clone() });
+                let note = Note::KeepsItsSign { into: cause.into.clone(), of: cause.of.clone() };
+                if !notes.contains(&note) {
+                    notes.push(note);
+                }
             }
         }
         notes

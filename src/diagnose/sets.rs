@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::acts::along;
 use super::candidate::Candidate;
+use super::coordinate::along;
 use super::found::Slot;
 use super::problem::{Grain, Model, Part};
 use super::search::Search;

@@ -51,7 +51,7 @@ fn as_cause(added: &Added) -> Cause {
         of: cause.of.clone(),
         also_into: cause.also_into.iter().map(|a| a.channel().to_string()).collect(),
         also_of: cause.also_of.clone(),
-        parts: cause.as_part(&parameters),
+        parts: vec![cause.as_part(&parameters)],
         parameters,
         wording: cause.wording(None),
         ..Cause::default()

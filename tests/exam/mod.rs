@@ -206,7 +206,8 @@ impl Hidden {
         let same = |e: &str, into: &str, of: Option<&str>| {
             e == self.effect && into == self.into && of == self.of
         };
-        same(&cause.effect, &cause.into, cause.of.as_deref())
+        // a part of a sum of laws at one place is named too
+        cause.holds(self.effect, self.into, self.of)
             || cause.indistinguishable.iter().any(|a| same(&a.effect, &a.into, a.of.as_deref()))
     }
 }

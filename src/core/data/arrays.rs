@@ -5,8 +5,7 @@
 //! column a channel, and a third axis numbers records. Scalars `Ts`, `dt`, `sampling_time`
 //! (s) and `fs` (Hz) state the step.
 
-use super::csv::place;
-use super::error::DataError;
+use super::error::{DataError, place};
 use super::remark::Remark;
 use super::table::{CellFault, CellProblem, Column, Table};
 use std::collections::BTreeMap;

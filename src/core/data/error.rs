@@ -325,4 +325,14 @@ impl DataError {
         let at = Box::new(Place { key: Some(key.into()), ..Place::default() });
         Self::Setting { at, value, rule }
     }
+
+    /// A file of a kind that is not read, and how to make one of it that is.
+    pub(super) fn of_other_kind(source: &str, found: &'static str, remedy: &'static str) -> Self {
+        Self::OtherKind { at: place(source, None, None), found, remedy }
+    }
+}
+
+/// A place in a file.
+pub(super) fn place(source: &str, line: Option<usize>, column: Option<usize>) -> Box<Place> {
+    Box::new(Place { file: Some(source.to_owned()), line, column, key: None })
 }

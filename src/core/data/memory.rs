@@ -1,8 +1,7 @@
 //! Tables of columns that a program holds in memory.
 
 use super::arrays::{column, twice};
-use super::csv::place;
-use super::error::DataError;
+use super::error::{DataError, place};
 use super::table::{Column, Table};
 use super::unit::header;
 

@@ -33,6 +33,7 @@ mod memory;
 pub mod noise;
 mod npy;
 mod npz;
+mod open;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod periods;

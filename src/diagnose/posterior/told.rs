@@ -24,20 +24,27 @@ fn has(fit: &Fit, wanted: &Candidate) -> bool {
 
 /// Whether a model has a cause at the place of another.
 fn has_place(fit: &Fit, wanted: &Candidate) -> bool {
-    fit.model.added.iter().any(|a| a.cause.into == wanted.into && a.cause.of == wanted.of)
+    let here = |cause: &Candidate| cause.into == wanted.into && cause.of == wanted.of;
+    fit.model.added.iter().any(|added| here(&added.cause))
 }
 
-/// The causes of a headline with what could stand in the place of each.
+/// The causes of a headline with what could stand in the place of each: laws of one place share it.
 pub(super) fn slots(problem: &Problem<'_>, beam: &Beam, headline: &Fit) -> Vec<Slot> {
     let known = headline.model.known();
-    let limits = headline.model.added[..known].iter().map(|added| Slot::of(&added.cause));
-    let causes = (known..headline.model.added.len()).map(|i| slot(problem, beam, headline, i));
-    limits.chain(causes).collect()
+    let mut slots: Vec<Slot> =
+        headline.model.added.iter().map(|added| Slot::of(&added.cause)).collect();
+    for own in headline.model.places().into_iter().filter(|own| own[0] >= known) {
+        let slot = slot(problem, beam, headline, &own);
+        own.into_iter().for_each(|i| slots[i] = slot.clone());
+    }
+    slots
 }
 
-fn slot(problem: &Problem<'_>, beam: &Beam, headline: &Fit, index: usize) -> Slot {
-    let own = &headline.model.added[index].cause;
-    let bare = headline.model.without(index);
+fn slot(problem: &Problem<'_>, beam: &Beam, headline: &Fit, own: &[usize]) -> Slot {
+    let model = &headline.model;
+    let laws: Vec<&Arc<Candidate>> = own.iter().map(|&i| &model.added[i].cause).collect();
+    let is_own = |cause: &Candidate| laws.iter().any(|law| law.same_cause(cause));
+    let bare = model.without_all(own);
     let rest = SetKey::new(headline.free, bare.added.iter().map(|a| name(&a.cause)));
     let without = beam.get(&rest);
     // what a member leaves, against what is left without any
@@ -49,23 +56,33 @@ fn slot(problem: &Problem<'_>, beam: &Beam, headline: &Fit, index: usize) -> Slo
     };
     let mut members: Vec<(f64, Arc<Candidate>, f64)> = vec![];
     for fit in beam.fits().filter(|fit| fit.free == headline.free) {
-        let new = fit.model.added.iter().find(|added| {
-            let others = fit.model.added.iter().filter(|a| !std::ptr::eq(*a, *added));
-            SetKey::new(fit.free, others.map(|a| name(&a.cause))) == rest
-        });
-        let Some(new) = new.filter(|new| !new.cause.same_cause(own)) else { continue };
-        members.push((fit.posterior(), new.cause.clone(), gain(fit)));
+        let is_rest = |cause: &Candidate| bare.added.iter().any(|a| a.cause.same_cause(cause));
+        let causes = fit.model.added.iter().map(|added| &added.cause);
+        let (stay, new): (Vec<_>, Vec<_>) = causes.partition(|cause| is_rest(cause));
+        // in the place of one law or of all of them: one other, or several of one place
+        let (still, other): (Vec<_>, Vec<_>) = new.into_iter().partition(|cause| is_own(cause));
+        let one_place =
+            other.iter().all(|cause| cause.same_cause(other[0]) || cause.same_place(other[0]));
+        if stay.len() == bare.added.len() && still.len() < own.len() && one_place {
+            members.extend(other.into_iter().map(|c| (fit.posterior(), c.clone(), gain(fit))));
+        }
     }
     members.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut seen: Vec<Arc<Candidate>> = vec![];
+    members.retain(|(_, cause, _)| {
+        let is_new = !seen.iter().any(|known| known.same_cause(cause));
+        seen.push(cause.clone());
+        is_new
+    });
     let top = beam.best().map_or(0.0, Fit::posterior);
     let near = members.iter().filter(|m| (m.0 - top).exp() > LOOK_ALIKE).count();
     let others = members.split_off(near.min(SET - 1));
-    let mut set = vec![(own.clone(), 1.0)];
+    let mut set = vec![(laws[0].clone(), 1.0)];
     set.extend(members.into_iter().map(|(_, cause, gain)| (cause, gain)));
     let chances = set.iter().map(|(c, _)| beam.probability(|fit| has(fit, c))).collect();
     let belief = Belief {
-        law: beam.probability(|fit| has(fit, own)),
-        place: beam.probability(|fit| has_place(fit, own)),
+        law: beam.probability(|fit| laws.iter().all(|law| has(fit, law))),
+        place: beam.probability(|fit| has_place(fit, laws[0])),
         members: chances,
     };
     let y = |fit: &Fit| problem.simulate(&fit.model, Grain::Coarse);

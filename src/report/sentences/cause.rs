@@ -6,7 +6,7 @@
 
 use super::column;
 use super::size::{amplitude, factor, found_shape, unresolved, wave};
-use crate::diagnose::{ActsWhere, Cause, InRecord, Site, Value, Wording};
+use crate::diagnose::{ActsWhere, Cause, InRecord, LawPart, Site, Value, Wording};
 use crate::digits::{interval, number, percent, spaced, with_unit};
 use crate::effect::Size;
 
@@ -72,8 +72,24 @@ fn body(cause: &Cause) -> String {
             });
             format!("Parameter {} drifts by {rate}{from}", cause.into)
         }
-        _ => format!("{}{}", place(cause), size(cause)),
+        _ => format!("{}{}{}", place(cause), size(cause), beside(cause)),
     }
+}
+
+/// The other laws of a sum: `, together with viscous friction, 0.12 N s/m more than the model has`.
+fn beside(cause: &Cause) -> String {
+    let of_part = |part: &LawPart| {
+        let own = Cause {
+            effect: part.effect.clone(),
+            into: cause.into.clone(),
+            of: cause.of.clone(),
+            parameters: part.parameters.clone(),
+            wording: part.wording.clone(),
+            ..Cause::default()
+        };
+        format!(", together with {}{}", lower(&part.wording.title), size(&own))
+    };
+    cause.parts.iter().skip(1).map(of_part).collect()
 }
 
 /// `Parameter J is 0.01921 +- 0.00015 kg m^2 instead of 0.02000 (4.0 % less)`.

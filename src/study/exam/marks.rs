@@ -21,7 +21,7 @@ pub enum Hit {
     Missed,
     /// It stands among what a cause cannot be told from.
     InSet,
-    /// It heads a cause.
+    /// It heads a cause, or is a part of one.
     Exact,
 }
 
@@ -46,7 +46,7 @@ pub struct Marks {
     pub hits: Vec<Hit>,
     /// Whether the first cause holds one of the hidden effects.
     pub first: bool,
-    /// Headlines of the causes, short; faults of the data left out.
+    /// Laws of the causes, short; faults of the data left out.
     pub found: Vec<String>,
     /// The others of the first one's set, short.
     pub beside: Vec<String>,
@@ -81,8 +81,15 @@ fn beside(cause: &Answered) -> Vec<String> {
     others.map(|other| short(&other.effect, &other.into, other.of.as_deref())).collect()
 }
 
+/// Its laws, short: one of a plain law, several of a sum at one place.
+fn laws(cause: &Answered) -> Vec<String> {
+    let parts = cause.parts.iter();
+    let laws = parts.map(|part| short(&part.effect, &cause.into, cause.of.as_deref()));
+    std::iter::once(headline(cause)).chain(laws.filter(|law| *law != headline(cause))).collect()
+}
+
 fn hit(cause: &Answered, name: &str) -> Hit {
-    match headline(cause) == name {
+    match laws(cause).iter().any(|law| law == name) {
         true => Hit::Exact,
         false if beside(cause).iter().any(|other| other == name) => Hit::InSet,
         false => Hit::Missed,
@@ -108,8 +115,10 @@ pub(super) fn removed(
 
 /// Coefficients of a cause less the true ones, in standard errors; `parameter` carries its `value`.
 fn standardised(cause: &Answered, truth: &Hidden) -> Vec<f64> {
+    let part = cause.parts.iter().find(|part| part.effect == truth.effect);
+    let parameters = part.map_or(&cause.parameters, |part| &part.parameters);
     let one = |own: &super::Number| {
-        let known = cause.parameters.iter().find(|p| p.name == own.name)?;
+        let known = parameters.iter().find(|p| p.name == own.name)?;
         let error = known.std_error.filter(|error| *error > 0.0)?;
         Some((known.value - own.value) / error)
     };
@@ -121,7 +130,8 @@ fn told(causes: &[&Answered], hidden: &[String]) -> Vec<(f64, bool)> {
     let is_hidden = |name: &String| hidden.contains(name);
     let mut all = vec![];
     for cause in causes {
-        all.extend(cause.probability.map(|p| (p, is_hidden(&headline(cause)))));
+        // a sum is right where one of its laws is
+        all.extend(cause.probability.map(|p| (p, laws(cause).iter().any(is_hidden))));
         let others = cause.indistinguishable.iter().zip(beside(cause));
         all.extend(others.filter_map(|(o, name)| Some((o.probability?, is_hidden(&name)))));
     }
@@ -157,7 +167,7 @@ impl Marks {
             case: truth.case.clone(),
             system: truth.system.clone(),
             first: causes.first().is_some_and(|c| hidden.iter().any(|n| hit(c, n) > Hit::Missed)),
-            found: causes.iter().map(|c| headline(c)).collect(),
+            found: causes.iter().flat_map(|c| laws(c)).collect(),
             beside: causes.first().map_or(vec![], |c| beside(c)),
             verdict: answer.verdict.clone().unwrap_or_default(),
             gain_covered: gain.map(|(share, [low, high])| low <= share && share <= high),
