@@ -4,6 +4,7 @@
 
 mod encoder;
 mod learned_part;
+mod learned_part_read;
 mod paper_msd;
 mod trainer;
 mod training;

@@ -6,7 +6,6 @@ use std::ops::ControlFlow;
 use lacuna::data::Record;
 use lacuna::evaluate::{Init, Simulation, want};
 use lacuna::file::{Document, Format, to_toml_with};
-use lacuna::lfr::AugmentedModel;
 use lacuna::report::documents::{Fitted, fitted, scores};
 use lacuna::report::{Shown, TrainingReport};
 use lacuna::system::System;
@@ -112,7 +111,7 @@ fn trained(
     let training = &recipe.training;
     let (start, started) = recipe.start(system, &data.train, training.seed)?;
     // what cannot be saved is better known before the work than after it
-    AugmentedModel::new(start.model.clone()).into_system()?;
+    start.system()?;
     let epochs = training.all_epochs();
     let mut follow = Following { watch, epochs, at: 0, said: "starting".into() };
     let mut fit = training.fit(&start, &data.train, &data.validation, &mut follow)?;
@@ -121,7 +120,7 @@ fn trained(
         parts = ablate(&mut fit, &data.validation, training.sparse.prune)?;
     }
     let outputs = want(system)?.outputs;
-    let model = AugmentedModel::new(fit.model.model.clone()).into_system()?;
+    let model = fit.model.system()?;
     let mut report = TrainingReport::of(&fit, &outputs, &training.validation.lengths);
     let mut remarks = vec![started.to_string()];
     remarks.extend(parts.iter().map(ToString::to_string));

@@ -239,6 +239,10 @@ pub struct Simulate {
     /// the model's `initial` [default: until the start is forgotten, at most 10 %]
     #[arg(long, value_name = "N")]
     pub init: Option<usize>,
+    /// Predict every output K samples ahead from what was measured until then, instead of simulating
+    /// it; the noise that decides how measurements are weighed is estimated on the record
+    #[arg(long, value_name = "K", conflicts_with = "init", value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    pub horizon: Option<u64>,
 }
 
 #[derive(Debug, Clone, Arguments)]

@@ -1,6 +1,7 @@
 //! `lacuna fit`.
 
 mod progress;
+mod readback;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -17,13 +18,13 @@ use lacuna::data::Record;
 use lacuna::digits::number;
 use lacuna::evaluate::{Init, Metrics, Simulation};
 use lacuna::file::{Document, save_with, write_text};
-use lacuna::lfr::AugmentedModel;
 use lacuna::report::documents::{self, Fitted, fitted};
 use lacuna::report::{Shown, TrainingReport};
 use lacuna::system::System;
-use lacuna::train::{Ablation, Checkpoint, Ended, Epoch, Fit, Recipe, ablate, warnings};
+use lacuna::train::{Ablation, Checkpoint, Disguise, Ended, Epoch, Fit, Recipe, ablate, warnings};
 
 use progress::{Following, Progress};
+use readback::ReadBack;
 
 /// Share of the data that is kept for validation where no record is given for it.
 const VALIDATION: f64 = 0.2;
@@ -74,7 +75,7 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let begun = recipe.start(&system, &records, recipe.training.seed);
     let (start, started) = begun.map_err(located)?;
     // what cannot be saved is better known before the work than after it
-    AugmentedModel::new(start.model.clone()).into_system()?;
+    start.system()?;
     look.say(&started.to_string());
     if known {
         look.say("Going on from the checkpoint.");
@@ -89,7 +90,11 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
         parts = ablate(&mut fit, &validation, recipe.training.sparse.prune)?;
     }
     let (fit, want) = (&fit, &want.outputs[..]);
-    let done = Done { args, system: &system, recipe: &recipe, fit, want, parts: &parts };
+    // what was learned is asked for its name where it was learned
+    let read = records.first().map_or(Ok(vec![]), |record| ReadBack::of(&fit.model, record))?;
+    let disguise = records.first().map_or(Ok(None), |record| fit.model.disguise(record))?;
+    let (parts, read, disguise) = (&parts[..], &read[..], disguise.as_ref());
+    let done = Done { args, system: &system, recipe: &recipe, fit, want, parts, read, disguise };
     done.write(&started.to_string(), test.as_ref().or(validation.first()), test.is_some(), look)
 }
 
@@ -101,6 +106,8 @@ struct Done<'a> {
     fit: &'a Fit,
     want: &'a [(String, String)],
     parts: &'a [Ablation],
+    read: &'a [ReadBack],
+    disguise: Option<&'a Disguise>,
 }
 
 impl Done<'_> {
@@ -113,7 +120,7 @@ impl Done<'_> {
         look: &Console,
     ) -> Result<u8, Failure> {
         let (out, fit) = (&self.args.out, self.fit);
-        let model = AugmentedModel::new(fit.model.model.clone()).into_system()?;
+        let model = fit.model.system()?;
         let header =
             [format!("Fitted by `lacuna fit`: the best of {} epochs.", fit.history.len() - 1)];
         save_with(&model, &out.join("model.toml"), &header)?;
@@ -128,6 +135,9 @@ impl Done<'_> {
                 .noting(started);
         for text in self.said() {
             report = report.noting(&text);
+        }
+        for curve in self.read.iter().filter_map(ReadBack::curve) {
+            report = report.reading(curve);
         }
         let (mut run, mut before) = (None, vec![]);
         if let Some(record) = shown {
@@ -174,6 +184,8 @@ impl Done<'_> {
         look.say(&format!("Wrote {} into {}", FILES.join(", "), out.display()));
         let (parts, outputs) = (self.parts, self.want);
         let mut document = fitted(&Fitted { fit, parts, outputs, scores, is_test });
+        document["read_back"] = self.read.iter().map(ReadBack::document).collect();
+        document["parameters_in_disguise"] = json!(self.disguise);
         for (key, name) in ["model", "weights", "history", "report"].iter().zip(FILES) {
             document[*key] = json!(name);
         }
@@ -183,6 +195,8 @@ impl Done<'_> {
     /// What the parts of the model are worth, and what the course of the training warns of.
     fn said(&self) -> Vec<String> {
         let mut said: Vec<String> = self.parts.iter().map(ToString::to_string).collect();
+        said.extend(self.read.iter().map(ReadBack::sentence));
+        said.extend(self.disguise.map(ToString::to_string));
         said.extend(warnings(self.fit).into_iter().map(|text| format!("Warning: {text}")));
         said
     }

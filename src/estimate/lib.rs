@@ -1,9 +1,12 @@
 //! Fits a model's own parameters to a record (grey-box estimation), or makes a linear model of
 //! the record alone.
 
-use lacuna_core::{data, effect, evaluate, fault, model, optimise, statistics, system, watch};
+use lacuna_core::{
+    data, effect, evaluate, fault, model, optimise, real, statistics, system, watch,
+};
 
 mod fit;
+pub mod law;
 mod linear;
 mod rank;
 

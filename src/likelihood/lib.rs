@@ -17,6 +17,7 @@ extern crate self as lacuna;
 
 use lacuna_core::{data, effect, evaluate, fault, optimise, real, register, statistics, system};
 
+mod ahead;
 mod autoregressive;
 mod backward;
 mod error;

@@ -17,6 +17,7 @@ pub mod documents;
 mod escape;
 mod figure;
 mod html;
+mod learned;
 mod missing;
 mod overlay;
 mod page;
@@ -40,6 +41,7 @@ pub use missing::MissingReport;
 pub use page::{Cell, Page, share};
 pub use provenance::{FileUsed, Provenance};
 
+pub use learned::LearnedCurve;
 pub use training::{Shown, TrainingReport};
 
 /// The report of a diagnosis: one self-contained HTML page.

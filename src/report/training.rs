@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::figure::{Figure, Role, Scale};
+use super::learned::{LearnedCurve, section};
 use super::overlay::{Overlay, with_unit};
 use super::page::Page;
 use crate::data::Record;
@@ -40,6 +41,7 @@ pub struct TrainingReport<'a> {
     lengths: Vec<usize>,
     shown: Option<Shown<'a>>,
     notes: Vec<String>,
+    curves: Vec<LearnedCurve>,
 }
 
 impl<'a> TrainingReport<'a> {
@@ -62,7 +64,17 @@ impl<'a> TrainingReport<'a> {
         let (outputs, lengths) = (outputs.to_vec(), lengths.to_vec());
         let best = history.iter().rfind(|epoch| epoch.best).or(history.last());
         let best = best.map_or(0, |epoch| epoch.epoch);
-        Self { history, ended: None, best, epochs, outputs, lengths, shown: None, notes: vec![] }
+        Self {
+            history,
+            ended: None,
+            best,
+            epochs,
+            outputs,
+            lengths,
+            shown: None,
+            notes: vec![],
+            curves: vec![],
+        }
     }
 
     /// The same with a record.
@@ -76,6 +88,13 @@ impl<'a> TrainingReport<'a> {
     #[must_use]
     pub fn noting(mut self, text: &str) -> Self {
         self.notes.push(text.into());
+        self
+    }
+
+    /// The same with what the learned part was read as.
+    #[must_use]
+    pub fn reading(mut self, curve: LearnedCurve) -> Self {
+        self.curves.push(curve);
         self
     }
 
@@ -96,6 +115,7 @@ impl<'a> TrainingReport<'a> {
         for note in &self.notes {
             page.element("p", "note", note);
         }
+        self.curves.iter().for_each(|curve| section(&mut page, curve));
         self.courses(&mut page);
         if let Some(shown) = self.shown {
             self.signals(&mut page, shown);

@@ -40,6 +40,8 @@ pub struct Baseline<'a> {
     drive: Drive,
     measured: Vec<Option<&'a [f64]>>,
     simulated: OnceLock<Result<Course, EncoderError>>,
+    /// Inputs along the simulation, where they are not the record's.
+    driven: Option<Vec<Vec<f64>>>,
 }
 
 /// The baseline along the record: one series per signal with a value at every sample, not a
@@ -83,13 +85,21 @@ impl<'a> Baseline<'a> {
         let segments = record.segments.clone();
         let drive = Drive { inputs, clocks: vec![0.0; segments.len()], segments };
         let simulated = OnceLock::new();
-        Ok(Self { system, record, augmented: 0, plan, drive, measured, simulated })
+        Ok(Self { system, record, augmented: 0, plan, drive, measured, simulated, driven: None })
     }
 
     /// The same with so many states added to the baseline's.
     #[must_use]
     pub fn augmented(mut self, states: usize) -> Self {
         self.augmented = states;
+        self
+    }
+
+    /// The same with a simulation that is known otherwise, and the inputs along it: of a plant
+    /// in its loop, which alone would drift.
+    #[must_use]
+    pub fn along(mut self, course: Course, inputs: Vec<Vec<f64>>) -> Self {
+        (self.simulated, self.driven) = (OnceLock::from(Ok(course)), Some(inputs));
         self
     }
 
@@ -208,7 +218,11 @@ impl<'a> Baseline<'a> {
                 self.measured()?
             }
         };
-        let u: Vec<&[f64]> = self.drive.inputs.iter().map(|u| &u[..]).collect();
+        let inputs = match (&self.driven, of) {
+            (Some(driven), Outputs::Simulated) => driven,
+            _ => &self.drive.inputs,
+        };
+        let u: Vec<&[f64]> = inputs.iter().map(|u| &u[..]).collect();
         let ks = window.starts(&segments, &y, 1);
         let needed = 2 * self.plan.sizes.x.max(1);
         if ks.len() < needed {

@@ -2,7 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Ask, Sizes, Stage, StateSpaceModel};
+use crate::model::probe::Point;
+use crate::model::{Ask, Law, Sizes, Stage, StateSpaceModel};
 use crate::network::{Frame, ResNet};
 use crate::system::{Hold, Method, Sampling, System};
 
@@ -134,7 +135,7 @@ impl Baseline {
         use crate::model::probe::{Along, slope};
         let (sizes, law) = (self.sizes(), self.system.model.as_ref());
         let mut seen: Vec<usize> = (0..sizes.x).collect();
-        let points = crate::system::points(law, 8);
+        let points = probes(law);
         for i in 0..sizes.u {
             let mut along = vec![0.0; sizes.u];
             along[i] = 1.0;
@@ -153,6 +154,19 @@ impl Baseline {
         self.system.model.ramped()
             || self.system.sampling.hold == Hold::First && self.pace() != Pace::Discrete
     }
+}
+
+/// Points at which a law is asked what depends on what: large ones and small ones, as a limit
+/// that large signals reach hides what small ones do.
+pub(super) fn probes(law: &dyn Law) -> Vec<Point> {
+    let large = crate::system::points(law, 8);
+    let shrunk = |by: f64| {
+        large.iter().cloned().map(move |mut point| {
+            point.x.iter_mut().chain(&mut point.u).for_each(|value| *value *= by);
+            point
+        })
+    };
+    large.iter().cloned().chain(shrunk(1e-3)).chain(shrunk(1e-6)).collect()
 }
 
 /// A network between signals in physical units: it sees (z − offset) / scale and gives

@@ -26,6 +26,7 @@ mod newton;
 mod number;
 mod order;
 mod program;
+mod reach;
 mod rows;
 mod sampled;
 mod signal;
@@ -35,7 +36,7 @@ mod structure;
 mod work;
 
 pub use block::{Baseline, Block, Learned};
-pub use closed_loop::{ClosedLoop, Controller};
+pub use closed_loop::{ClosedLoop, Controller, Replay};
 pub use error::LfrError;
 pub use interconnection::Interconnection;
 pub use matrix::{Entry, Matrix};

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::reach::{is_moved, is_seen, known};
 use super::{Baseline, Block, Interconnection, Learned, LfrError, Matrix, Sink, Source};
 use crate::network::{Layout, NetworkError, ResNet, Start};
 
@@ -53,6 +54,13 @@ pub struct Structure {
     pub output_equation: bool,
     /// Widths of the networks' hidden layers.
     pub hidden: Vec<usize>,
+    /// Names of the baseline's states that the state equation is augmented in; empty: all. A
+    /// force enters the equation of a speed alone, and what is learned can then be read as one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub into: Vec<String>,
+    /// Names of the baseline's states and inputs that the networks see; empty: all.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub of: Vec<String>,
 }
 
 impl Default for Structure {
@@ -63,6 +71,8 @@ impl Default for Structure {
             state_equation: true,
             output_equation: false,
             hidden: vec![16, 16],
+            into: vec![],
+            of: vec![],
         }
     }
 }
@@ -130,6 +140,11 @@ impl Structure {
                 return Err(LfrError::Scales { expected, found });
             }
         }
+        let signals = baseline.system.signals();
+        let states = signals.states.iter().map(|state| &state.signal.name[..]);
+        let inputs = signals.inputs.iter().map(|input| &input.name[..]);
+        known("structure.into", &self.into, states.clone())?;
+        known("structure.of", &self.of, states.chain(inputs))?;
         let mut plan = Plan::new(baseline, scales, self.augmented_states);
         let (x, u) = (plan.states(), plan.inputs());
         let augmented = plan.augmented();
@@ -251,6 +266,13 @@ impl<'a> Plan<'a> {
         structure: &Structure,
         seed: u64,
     ) -> Result<(), LfrError> {
+        let signals = match &self.model.blocks[0] {
+            Block::Baseline(baseline) => baseline.system.signals(),
+            Block::Network(_) => crate::model::Signals::discrete(),
+        };
+        let (mut seen, mut moved) = (seen.to_vec(), moved.to_vec());
+        seen.retain(|port| is_seen(&structure.of, &signals, port.at));
+        moved.retain(|port| is_moved(&structure.into, &signals, port.at));
         if moved.is_empty() {
             return Err(LfrError::NothingLearned);
         }

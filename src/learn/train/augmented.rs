@@ -1,11 +1,14 @@
 //! A trained model: the interconnection and the encoder that starts it.
 
+use std::sync::OnceLock;
+
 use serde::{Deserialize, Serialize};
 
 use crate::data::Record;
 use crate::encoder::Encoder;
-use crate::lfr::{Block, Engine, Interconnection, Number};
-use crate::model::Signals;
+use crate::lfr::{AugmentedModel, Block, ClosedLoop, Engine, Interconnection, Number, Sampled};
+use crate::model::{Law, Signals};
+use crate::system::{Sampling, System};
 
 use super::TrainError;
 use super::course::{Course, Series};
@@ -20,6 +23,12 @@ pub struct Augmented {
     pub model: Interconnection,
     /// From past samples to the first state.
     pub encoder: Box<dyn Encoder>,
+    /// The loop in which the model stands, where there is one: it is then run from the references,
+    /// and what the controller remembers is known from the record.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    closed: Option<ClosedLoop>,
+    #[serde(skip)]
+    joined: OnceLock<Interconnection>,
 }
 
 /// Outputs along a record, not a number where nothing was simulated.
@@ -40,10 +49,46 @@ impl Augmented {
     ///
     /// If they do not fit together.
     pub fn new(model: Interconnection, encoder: Box<dyn Encoder>) -> Result<Self, TrainError> {
-        let augmented = Self { model, encoder };
+        let augmented = Self { model, encoder, closed: None, joined: OnceLock::new() };
         augmented.model.check()?;
         augmented.pasts()?;
         Ok(augmented)
+    }
+
+    /// The same in the loop of a controller: the model is the plant of `closed`.
+    ///
+    /// # Errors
+    ///
+    /// As [`ClosedLoop::around`].
+    pub fn in_loop(self, closed: ClosedLoop) -> Result<Self, TrainError> {
+        let looped = Self { closed: Some(closed), joined: OnceLock::new(), ..self };
+        looped.joined()?;
+        Ok(looped)
+    }
+
+    /// What is run: the model, in its loop where it stands in one.
+    pub(crate) fn joined(&self) -> Result<&Interconnection, TrainError> {
+        let Some(closed) = &self.closed else { return Ok(&self.model) };
+        if let Some(joined) = self.joined.get() {
+            return Ok(joined);
+        }
+        let joined = closed.around(&self.model)?;
+        Ok(self.joined.get_or_init(|| joined))
+    }
+
+    /// The model as a system that simulates, can be estimated and diagnosed like any other; with
+    /// its controller beside it where it stands in a loop.
+    ///
+    /// # Errors
+    ///
+    /// As [`AugmentedModel::into_system`].
+    pub fn system(&self) -> Result<System, TrainError> {
+        let open = AugmentedModel::new(self.model.clone()).into_system()?;
+        let Some(ClosedLoop { controller, .. }) = self.closed.clone() else { return Ok(open) };
+        let sampling_time = self.sampling_time();
+        let closed = ClosedLoop::new(Sampled::of(&open, sampling_time)?, controller);
+        let sampling = Sampling { sampling_time: Some(sampling_time), ..Sampling::default() };
+        Ok(System::new(closed, sampling))
     }
 
     /// Names and units of the baseline's signals.
@@ -108,6 +153,7 @@ impl Augmented {
     pub fn set_parameters(&mut self, values: &[f64]) -> Result<(), TrainError> {
         let own = self.model.count().min(values.len());
         self.model.set_parameters(&values[..own])?;
+        self.joined = OnceLock::new();
         Ok(self.encoder.set_weights(&values[own..])?)
     }
 
@@ -118,7 +164,11 @@ impl Augmented {
         record: &'r Record,
         number: usize,
     ) -> Result<Series<'r>, TrainError> {
-        let signals = self.signals();
+        let signals = match &self.closed {
+            Some(closed) => Some(closed.signals()),
+            None => self.signals(),
+        };
+        let count = self.joined()?.inputs;
         let (inputs, outputs) = match &signals {
             Some(signals) => (&signals.inputs[..], &signals.outputs[..]),
             None => (&[][..], &[][..]),
@@ -135,11 +185,14 @@ impl Augmented {
                 });
                 each.collect::<Result<Vec<_>, _>>()
             };
-        Ok(Series {
-            u: find("input", &record.inputs, inputs, self.model.inputs)?,
-            y: find("output", &record.outputs, outputs, self.model.outputs)?,
-            segments: record.segments.clone(),
-        })
+        let u = find("input", &record.inputs, inputs, count)?;
+        let y = find("output", &record.outputs, outputs, self.model.outputs)?;
+        let segments = record.segments.clone();
+        let replay = match &self.closed {
+            Some(closed) => closed.replay(&u, &y, &segments, self.sampling_time()),
+            None => None,
+        };
+        Ok(Series { u, y, replay, segments })
     }
 
     /// Free run along a record: each segment starts from the encoder's estimate, as soon as
@@ -163,10 +216,17 @@ impl Augmented {
         }
         let samples = series.len();
         let mut outputs = vec![vec![f64::NAN; samples]; self.model.outputs];
-        let engine = Engine::new(&self.model)?;
-        let unsolved = run(&engine, &self.guess()?, &course, &stretches, |sample| {
-            outputs[sample.output][sample.at] = sample.value;
-        });
+        let engine = Engine::new(self.joined()?)?;
+        let unsolved = run(
+            &engine,
+            &self.guess()?,
+            &course,
+            &stretches,
+            |sample| {
+                outputs[sample.output][sample.at] = sample.value;
+            },
+            None,
+        );
         if let Some(path) = unsolved {
             return Err(TrainError::Loop { path });
         }

@@ -1,6 +1,6 @@
 //! Records as the training step reads them.
 
-use crate::lfr::Number;
+use crate::lfr::{Number, Replay};
 
 /// Inputs and outputs of all records, one after the other.
 #[derive(Debug, Clone)]
@@ -9,6 +9,10 @@ pub(crate) struct Course<E> {
     pub u: Vec<Vec<E>>,
     /// One series per output, not a number where nothing was measured.
     pub y: Vec<Vec<E>>,
+    /// Inputs as the encoder sees them, where those are others: a plant's in its loop.
+    pub seen: Option<Vec<Vec<E>>>,
+    /// States behind the encoder's that are known: a controller's.
+    pub known: Vec<Vec<E>>,
     /// Time of each sample since the beginning of its record, s.
     pub time: Vec<E>,
     /// How much each sample of each output counts; absent: all alike.
@@ -25,6 +29,8 @@ impl<E: Number> Course<E> {
         let mut course = Self {
             u: vec![vec![]; inputs],
             y: vec![vec![]; outputs],
+            seen: None,
+            known: vec![],
             time: vec![],
             counted: None,
             goes_on: vec![],
@@ -34,6 +40,14 @@ impl<E: Number> Course<E> {
                 course.u.iter_mut().zip(&record.u).chain(course.y.iter_mut().zip(&record.y));
             for (all, own) in pairs {
                 all.extend(own.iter().map(|&value| E::of(value)));
+            }
+            if let Some(replay) = &record.replay {
+                let seen = course.seen.get_or_insert_with(|| vec![vec![]; replay.inputs.len()]);
+                course.known.resize(replay.states.len(), vec![]);
+                let pairs = seen.iter_mut().zip(&replay.inputs);
+                for (all, own) in pairs.chain(course.known.iter_mut().zip(&replay.states)) {
+                    all.extend(own.iter().map(|&value| E::of(value)));
+                }
             }
             let samples = record.len();
             course.time.extend((0..samples).map(|k| E::of(k as f64 * sampling_time)));
@@ -60,6 +74,8 @@ pub struct Series<'a> {
     pub u: Vec<&'a [f64]>,
     /// One per output; not a number where nothing was measured.
     pub y: Vec<&'a [f64]>,
+    /// What a controller did along it, where the model stands in a loop.
+    pub replay: Option<Replay>,
     /// Stretches of samples without a break.
     pub segments: Vec<std::ops::Range<usize>>,
 }

@@ -62,6 +62,14 @@ impl<E: Number> Guess<E> {
         }
     }
 
+    /// Number of states that it estimates.
+    fn states(&self) -> usize {
+        match &self.by {
+            By::Network(net) => net.layout().outputs(),
+            By::Itself(_, states) => *states,
+        }
+    }
+
     /// Takes over other weights.
     pub fn set(&mut self, weights: &[f64]) {
         match &mut self.by {
@@ -96,7 +104,7 @@ impl<E: Number> Guess<E> {
         }
     }
 
-    /// The states at the samples `starts`, lane by lane.
+    /// The states at the samples `starts`, lane by lane, those that are known behind them.
     pub fn forward(
         &self,
         course: &Course<E>,
@@ -104,10 +112,15 @@ impl<E: Number> Guess<E> {
         work: &mut GuessWork<E>,
         x: &mut [Row<E>],
     ) {
+        let inputs = course.seen.as_ref().unwrap_or(&course.u);
         let series = |past: &Past| match past.output {
             true => &course.y[past.signal],
-            false => &course.u[past.signal],
+            false => &inputs[past.signal],
         };
+        let (x, known) = x.split_at_mut(self.states());
+        for (row, series) in known.iter_mut().zip(&course.known) {
+            row.lanes_mut().iter_mut().zip(starts).for_each(|(to, &k)| *to = series[k]);
+        }
         match &self.by {
             By::Network(net) => {
                 for (row, past) in work.z.iter_mut().zip(&self.pasts) {
@@ -141,7 +154,8 @@ impl<E: Number> Guess<E> {
         match &self.by {
             By::Network(net) => {
                 let (d, gy) = work.d.split_at_mut(net.layout().units());
-                gy.copy_from_slice(along_x);
+                let own = gy.len();
+                gy.copy_from_slice(&along_x[..own]);
                 net.back(&work.h, gy, d, &mut []);
                 let [x, h, d] = [&work.z, &work.h, &work.d].map(|rows| Instants::one(rows));
                 net.collect(1, x, h, d, &mut work.lines);

@@ -6,15 +6,20 @@
 //! on records it does not learn from. [`MultipleShooting`] is loss and gradient alone.
 
 mod ablate;
+mod added;
 mod augmented;
 mod batch;
 mod checkpoint;
 mod counted;
 mod course;
+mod disguise;
+mod entered;
 mod error;
 mod fit;
 mod groups;
 mod guess;
+mod looped;
+mod orthogonal;
 mod recipe;
 mod run;
 mod scale;
@@ -28,8 +33,11 @@ mod validate;
 mod whole;
 
 pub use ablate::{Ablation, ablate, warnings};
+pub use added::Contribution;
 pub use augmented::{Augmented, Run};
 pub use checkpoint::Checkpoint;
+pub use disguise::{Change, Disguise};
+pub use entered::{Added, Coordinate};
 pub use error::TrainError;
 pub use fit::{Ended, Epoch, Fit, Follow};
 pub use groups::{Group, GroupKind};

@@ -7,9 +7,10 @@ use crate::encoder::{
     Baseline as Known, Encoder, EncoderInitialiser, Linearised, ResNetEncoder, Spread, Started,
     Window,
 };
-use crate::lfr::{Baseline, Sampled, Scales, Structure};
+use crate::lfr::{Baseline, ClosedLoop, Sampled, Scales, Structure};
 use crate::system::System;
 
+use super::looped::Looped;
 use super::{Augmented, TrainError, Trainer};
 
 /// Everything about a training but the model, the records and the seed: what a
@@ -83,8 +84,20 @@ impl Recipe {
         let sampling_time = system
             .sampling_time(Some(record.sampling_time))
             .map_err(crate::encoder::EncoderError::from)?;
-        let system = &Sampled::where_needed(system, sampling_time)?;
-        let known = Known::new(system, record)?.augmented(augmented_states);
+        let closed = ClosedLoop::of(system);
+        let looped =
+            closed.as_ref().map(|closed| Looped::of(closed, system, record)).transpose()?;
+        let system = &match &closed {
+            Some(closed) => Sampled::where_needed(&closed.plant.system, sampling_time)?,
+            None => Sampled::where_needed(system, sampling_time)?,
+        };
+        let known = match looped {
+            Some(Looped { ref record, course, inputs }) => {
+                Known::new(system, record)?.along(course, inputs)
+            }
+            None => Known::new(system, record)?,
+        };
+        let known = known.augmented(augmented_states);
         let mut encoder = self.encoder.clone();
         let started = self.initialiser.initialise(encoder.as_mut(), &known, seed)?;
         let scaling = known.scaling()?;
@@ -102,7 +115,8 @@ impl Recipe {
             theta: None,
         };
         let model = self.structure.build(baseline, &scales, seed)?;
-        Ok((Augmented::new(model, encoder)?, started))
+        let start = Augmented::new(model, encoder)?;
+        Ok((if let Some(closed) = closed { start.in_loop(closed)? } else { start }, started))
     }
 
     /// Positions of the free parameters.

@@ -25,6 +25,9 @@ pub(crate) struct Simulated {
     pub value: f64,
 }
 
+/// Takes one state: its number, the sample of the course, its value.
+pub(crate) type State<'s> = &'s mut dyn FnMut(usize, usize, f64);
+
 /// Simulates all stretches side by side, with prediction errors taken as 0; gives the loop
 /// of S that was not solved, if there was one.
 pub(crate) fn run<E: Number>(
@@ -33,6 +36,7 @@ pub(crate) fn run<E: Number>(
     course: &Course<E>,
     stretches: &[Stretch],
     mut each: impl FnMut(Simulated),
+    mut state: Option<State<'_>>,
 ) -> Option<Vec<String>> {
     let program = &engine.program;
     // two frames are enough: the present sample's and the one before, where loops look for
@@ -63,6 +67,15 @@ pub(crate) fn run<E: Number>(
             let time = work.time.lanes_mut().iter_mut();
             time.zip(&lanes).for_each(|(to, s)| *to = course.time[at(s)]);
             engine.forward(&mut work, 1);
+            if let Some(state) = &mut state {
+                for (i, row) in work.rows[now..now + program.states].iter().enumerate() {
+                    for (stretch, value) in group.iter().zip(row.lanes()) {
+                        if stretch.start + t < stretch.end {
+                            state(i, stretch.start + t, value.wide());
+                        }
+                    }
+                }
+            }
             for output in 0..program.outputs {
                 let values = work.rows[program.y + output].lanes();
                 for (stretch, value) in group.iter().zip(values) {
@@ -76,4 +89,9 @@ pub(crate) fn run<E: Number>(
         }
     }
     work.unsolved.take()
+}
+
+/// Samples that are handled together.
+pub(crate) fn side_by_side<E: Number>() -> usize {
+    E::BLOCK
 }

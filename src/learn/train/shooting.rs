@@ -6,6 +6,7 @@ use crate::data::Record;
 use crate::lfr::Engine;
 
 use super::course::{Course, Series};
+use super::orthogonal::Orthogonal;
 use super::sections::{Outcome, Sections};
 use super::{Augmented, TrainError};
 
@@ -27,6 +28,7 @@ pub struct MultipleShooting<'a> {
     kernel: Kernel<'a>,
     starts: Vec<usize>,
     parameters: usize,
+    orthogonal: Option<Box<Orthogonal<'a>>>,
 }
 
 enum Kernel<'a> {
@@ -75,17 +77,18 @@ impl<'a> MultipleShooting<'a> {
         let time = augmented.sampling_time();
         let kernel = match shooting.arithmetic {
             Arithmetic::Double => {
-                let (engine, guess) = (Engine::new(&augmented.model)?, augmented.guess()?);
+                let (engine, guess) = (Engine::new(augmented.joined()?)?, augmented.guess()?);
                 let sections = Sections::new(engine, guess, length, weights, threads);
                 Kernel::Double(Box::new(sections), Course::new(time, &series))
             }
             Arithmetic::Single => {
-                let (engine, guess) = (Engine::new(&augmented.model)?, augmented.guess()?);
+                let (engine, guess) = (Engine::new(augmented.joined()?)?, augmented.guess()?);
                 let sections = Sections::new(engine, guess, length, weights, threads);
                 Kernel::Single(Box::new(sections), Course::new(time, &series))
             }
         };
-        Ok(Self { kernel, starts, parameters: augmented.parameters().len() })
+        let parameters = augmented.parameters().len();
+        Ok(Self { kernel, starts, parameters, orthogonal: None })
     }
 
     /// Lets samples count as much as given, output by output over all records one after the
@@ -95,6 +98,11 @@ impl<'a> MultipleShooting<'a> {
             Kernel::Double(_, course) => course.counted = Some(counted),
             Kernel::Single(_, course) => course.counted = Some(counted),
         }
+    }
+
+    /// Adds a penalty on what the learned part does in the place of parameters.
+    pub(super) fn penalise(&mut self, orthogonal: Orthogonal<'a>) {
+        self.orthogonal = Some(Box::new(orthogonal));
     }
 
     /// Samples in a section from now on, at most as many as there is room for.
@@ -169,18 +177,22 @@ impl<'a> MultipleShooting<'a> {
         &mut self,
         parameters: &[f64],
         starts: &[usize],
-        gradient: Option<&mut [f64]>,
+        mut gradient: Option<&mut [f64]>,
     ) -> Outcome {
-        match &mut self.kernel {
+        let mut outcome = match &mut self.kernel {
             Kernel::Double(sections, course) => {
                 sections.set(parameters);
-                sections.run(course, starts, gradient)
+                sections.run(course, starts, gradient.as_deref_mut())
             }
             Kernel::Single(sections, course) => {
                 sections.set(parameters);
-                sections.run(course, starts, gradient)
+                sections.run(course, starts, gradient.as_deref_mut())
             }
+        };
+        if let Some(orthogonal) = &mut self.orthogonal {
+            outcome.loss += orthogonal.add(parameters, gradient);
         }
+        outcome
     }
 }
 

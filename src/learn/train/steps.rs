@@ -7,6 +7,7 @@ use super::batch::{batches, shuffled};
 use super::checkpoint::State;
 use super::counted::counted;
 use super::fit::{Ended, Epoch, Fit, Follow};
+use super::orthogonal::Orthogonal;
 use super::scale::Units;
 use super::settings::Weights;
 use super::shooting::Shooting;
@@ -55,6 +56,11 @@ impl<'a> Steps<'a> {
         let mut loss = MultipleShooting::new(start, training, shooting, &variances)?;
         if let Some(counts) = counts {
             loss.count_by(counts);
+        }
+        if let (true, Some(record)) = (trainer.disguise > 0.0, training.first())
+            && let Some(penalty) = Orthogonal::new(start, record, trainer.disguise)?
+        {
+            loss.penalise(penalty);
         }
         let scorer = match validation {
             [] => None,

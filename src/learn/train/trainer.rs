@@ -47,6 +47,10 @@ pub struct Trainer {
     /// Weight of the squared relative distance of free baseline parameters from their nominal
     /// values.
     pub penalty: f64,
+    /// Weight of the same for what the learned part does in the place of parameters, free or not:
+    /// the larger, the nearer to orthogonal to their sensitivities. 0: no such penalty.
+    #[serde(skip_serializing_if = "is_nothing")]
+    pub disguise: f64,
     /// How much records and outputs count.
     pub weights: Weights,
     /// Sections that grow to their length; absent: they have it from the beginning.
@@ -62,6 +66,11 @@ pub struct Trainer {
     pub checkpoint: Option<Checkpoint>,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde asks for")]
+fn is_nothing(weight: &f64) -> bool {
+    *weight == 0.0
+}
+
 impl Default for Trainer {
     fn default() -> Self {
         Self {
@@ -75,6 +84,7 @@ impl Default for Trainer {
             validation: Validation::default(),
             patience: None,
             penalty: 1.0,
+            disguise: 0.0,
             weights: Weights::default(),
             growing: None,
             finish: None,
@@ -115,6 +125,7 @@ impl Trainer {
         let by_output = self.weights.outputs.values().map(|&weight| ("weights.outputs", weight));
         let penalties = [
             ("penalty", self.penalty),
+            ("disguise", self.disguise),
             ("sparse.states", states),
             ("sparse.inputs", inputs),
             ("sparse.outputs", outputs),

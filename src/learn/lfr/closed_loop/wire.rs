@@ -1,9 +1,9 @@
 //! Who is connected with whom in a closed loop, by number.
 
 use super::ClosedLoop;
+use crate::lfr::block::probes;
 use crate::model::probe::{Along, slope, unit};
 use crate::model::{Ask, Fault, Law, Signal, Signals, Sizes, State, TimeKind};
-use crate::system::points;
 
 /// Everything by number.
 #[derive(Debug)]
@@ -105,7 +105,7 @@ impl ClosedLoop {
     /// Whether a measured output depends on an input in the same sample.
     fn passes(&self, wired: &Wired, input: usize) -> bool {
         let along = unit(wired.plant.u, input);
-        points(&self.plant, 6).iter().any(|point| {
+        probes(&self.plant).iter().any(|point| {
             let slopes = slope(&self.plant, wired.plant, Ask::Output, point, Along::Input(&along));
             wired.measured.iter().any(|&output| slopes[output] != 0.0)
         })

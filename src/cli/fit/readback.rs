@@ -1,0 +1,152 @@
+//! What a learned part is: the channel that it enters, the coordinate that it depends on, and the
+//! law of the library that it most probably is.
+
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use lacuna::data::Record;
+use lacuna::digits::number;
+use lacuna::estimate::law::{Candidate, Pairs, Reading, read};
+use lacuna::register;
+use lacuna::report::LearnedCurve;
+use lacuna::train::{Added, Augmented, Contribution, Coordinate, TrainError};
+
+/// Laws that are listed.
+const LISTED: usize = 5;
+
+/// A learned part read along a record.
+pub struct ReadBack {
+    added: Added,
+    others: Vec<(String, f64)>,
+    /// Coordinates with what they decide, the one that decides most first.
+    coordinates: Vec<(Coordinate, Reading)>,
+}
+
+impl ReadBack {
+    /// Reads the learned part of a model along a record: one entry for what enters the states, and
+    /// one for each output that something is added to.
+    pub fn of(model: &Augmented, record: &Record) -> Result<Vec<Self>, TrainError> {
+        let Some(contribution) = model.added(record)? else { return Ok(vec![]) };
+        let library: Vec<_> = register::effects()
+            .into_iter()
+            .map(|(card, law)| (card.name.to_string(), law))
+            .collect();
+        let Contribution { channels, outputs, coordinates, sampling_time } = contribution;
+        let others = channels.iter().skip(1).map(|c| (c.channel.name.clone(), c.share)).collect();
+        let entered = channels.into_iter().next().map(|first| (first, others));
+        let all = entered.into_iter().chain(outputs.into_iter().map(|added| (added, vec![])));
+        let each = all.map(|(added, others)| {
+            let read = |coordinate: &Coordinate| {
+                let Coordinate { signal, values, .. } = coordinate;
+                let pairs =
+                    Pairs { coordinate: signal, z: values, w: &added.values, sampling_time };
+                (coordinate.clone(), read(&pairs, &library))
+            };
+            let mut coordinates: Vec<(Coordinate, Reading)> =
+                coordinates.iter().map(read).collect();
+            coordinates.sort_by(|a, b| b.1.share.total_cmp(&a.1.share));
+            Self { added, others, coordinates }
+        });
+        Ok(each.collect())
+    }
+
+    /// A sentence: "The learned part enters force and depends on v (97 %): it is ...".
+    pub fn sentence(&self) -> String {
+        let channel = &self.added.channel.name;
+        let percent = |share: f64| format!("{:.0} %", 100.0 * share);
+        let mut text = format!("The learned part enters `{channel}`");
+        if self.added.share < 1.0 {
+            let _ = write!(text, " ({} of what it adds)", percent(self.added.share));
+        }
+        let Some((coordinate, reading)) = self.coordinates.first() else { return text + "." };
+        let of = &coordinate.signal.name;
+        let _ = write!(text, " and depends on `{of}` ({})", percent(reading.share));
+        let _ = match reading.named() {
+            Some(law) => write!(
+                text,
+                ": most probably {} (probability {}, {} of it).",
+                named(law),
+                number(law.probability, None),
+                percent(law.share)
+            ),
+            None => match reading.candidates.iter().find(|law| !law.parts.is_empty()) {
+                None => write!(text, ": a curve of `{of}` without a name in the library."),
+                Some(nearest) => write!(
+                    text,
+                    ": a curve of `{of}` without a name in the library; nearest is {} ({} of it).",
+                    named(nearest),
+                    percent(nearest.share)
+                ),
+            },
+        };
+        text
+    }
+
+    /// The same as data.
+    pub fn document(&self) -> Value {
+        let coordinate = |(coordinate, reading): &(Coordinate, Reading)| {
+            let curve: Vec<[f64; 3]> =
+                reading.curve.iter().map(|drawn| [drawn.z, drawn.w, drawn.band]).collect();
+            let laws: Vec<Value> = reading.candidates.iter().take(LISTED).map(law).collect();
+            json!({
+                "coordinate": coordinate.signal.name,
+                "unit": coordinate.signal.unit,
+                "share": reading.share,
+                "laws": laws,
+                "curve": curve,
+                "baseline": coordinate.own,
+            })
+        };
+        let others: Vec<Value> = self
+            .others
+            .iter()
+            .map(|(name, share)| json!({"channel": name, "share": share}))
+            .collect();
+        json!({
+            "channel": self.added.channel.name,
+            "unit": self.added.channel.unit,
+            "share": self.added.share,
+            "other_channels": others,
+            "of": self.coordinates.iter().map(coordinate).collect::<Vec<_>>(),
+            "sentence": self.sentence(),
+        })
+    }
+
+    /// The learned term against its coordinate, as the report draws it.
+    pub fn curve(&self) -> Option<LearnedCurve> {
+        let (coordinate, reading) = self.coordinates.first()?;
+        let text = |signal: &lacuna::model::Signal| (signal.name.clone(), signal.unit.clone());
+        let points = reading.curve.iter().map(|d| (d.z, d.w - 2.0 * d.band, d.w + 2.0 * d.band));
+        Some(LearnedCurve {
+            coordinate: text(&coordinate.signal),
+            channel: text(&self.added.channel),
+            middle: reading.curve.iter().map(|drawn| (drawn.z, drawn.w)).collect(),
+            band: points.collect(),
+            baseline: coordinate.own.clone(),
+            sentence: self.sentence(),
+        })
+    }
+}
+
+/// A law in words: effects with their numbers.
+fn named(law: &Candidate) -> String {
+    let parts = law.parts.iter().map(|part| {
+        let knobs = part.law.card().knobs.into_iter().filter(|knob| knob.value.is_finite());
+        let knobs: Vec<String> =
+            knobs.map(|knob| format!("{} {}", knob.name, number(knob.value, None))).collect();
+        format!("{} ({})", part.effect, knobs.join(", "))
+    });
+    parts.collect::<Vec<_>>().join(" + ")
+}
+
+fn law(law: &Candidate) -> Value {
+    let part = |part: &lacuna::estimate::law::Part| {
+        let knobs = part.law.card().knobs.into_iter().filter(|knob| knob.value.is_finite());
+        let parameters: serde_json::Map<String, Value> =
+            knobs.map(|knob| (knob.name.to_string(), json!(knob.value))).collect();
+        json!({ "effect": part.effect, "parameters": parameters })
+    };
+    let parts: Vec<Value> = law.parts.iter().map(part).collect();
+    json!({ "parts": parts, "probability": law.probability, "share": law.share, "named": !law.parts.is_empty() })
+}

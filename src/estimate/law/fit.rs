@@ -1,0 +1,225 @@
+//! Regression of one law, of a sum of two and of a curve of straight lines on pairs.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::{Drawn, Part};
+use crate::effect::{CandidateEffect, EffectBlock, EffectCall, Role, View};
+use crate::model::LaneNumber;
+use crate::optimise::{Bounds, LeastSquares, LevenbergMarquardt};
+use crate::real::{F64x8, Real};
+
+/// A law, or a sum of two, where it meets the pairs best.
+pub(super) struct Fitted {
+    pub parts: Vec<Part>,
+    /// Sum of the squares that are left.
+    pub squares: f64,
+    /// Ranges of the knobs, part by part.
+    ranges: Vec<Bounds>,
+}
+
+impl Fitted {
+    /// Numbers that were fitted.
+    pub fn knobs(&self) -> usize {
+        self.parts.iter().map(|part| open(part.law.as_ref()).count()).sum()
+    }
+}
+
+/// Knobs that are fitted: those that are numbers and choose nothing.
+fn open(law: &dyn CandidateEffect) -> impl Iterator<Item = usize> {
+    let knobs = law.card().knobs;
+    let is = move |&i: &usize| knobs[i].role != Role::Choice && knobs[i].value.is_finite();
+    (0..law.card().knobs.len()).filter(is)
+}
+
+/// A law at many coordinates, at one value of its knobs.
+fn values(law: &dyn CandidateEffect, knobs: &[f64], z: &[f64]) -> Vec<f64> {
+    let packs = z.len().div_ceil(F64x8::LANES);
+    let mut coordinates = vec![F64x8::constant(0.0); packs];
+    for (k, &value) in z.iter().enumerate() {
+        coordinates[k / F64x8::LANES].set_lane(k % F64x8::LANES, value);
+    }
+    let one = knobs.iter().map(|&value| F64x8::constant(value));
+    let knobs: Vec<F64x8> = (0..packs).flat_map(|_| one.clone()).collect();
+    let rate = vec![F64x8::constant(0.0); packs];
+    let (mut w, mut rates) = (rate.clone(), vec![]);
+    let block = EffectBlock {
+        packs,
+        knobs: &knobs,
+        coordinates: &coordinates,
+        rate: &rate,
+        has_rate: false,
+        states: &[],
+    };
+    law.answer(EffectCall::F64(&block, &mut w, &mut rates));
+    (0..z.len()).map(|k| w[k / F64x8::LANES].lane(k % F64x8::LANES)).collect()
+}
+
+/// The knobs of a sum of laws against the pairs.
+struct Sum<'a> {
+    parts: &'a [Part],
+    /// Place of every fitted number: part and knob.
+    places: Vec<(usize, usize)>,
+    start: Vec<Vec<f64>>,
+    bounds: Bounds,
+    scales: Vec<f64>,
+    z: &'a [f64],
+    w: &'a [f64],
+}
+
+impl Sum<'_> {
+    fn knobs(&self, theta: &[f64]) -> Vec<Vec<f64>> {
+        let mut knobs = self.start.clone();
+        self.places.iter().zip(theta).for_each(|(&(part, knob), &value)| knobs[part][knob] = value);
+        knobs
+    }
+
+    fn left(&self, knobs: &[Vec<f64>]) -> Vec<f64> {
+        let mut left = self.w.to_vec();
+        for (part, knobs) in self.parts.iter().zip(knobs) {
+            let own = values(part.law.as_ref(), knobs, self.z);
+            left.iter_mut().zip(own).for_each(|(left, own)| *left -= own);
+        }
+        left
+    }
+}
+
+impl LeastSquares for Sum<'_> {
+    fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    fn residuals(&self, points: &[Vec<f64>]) -> Vec<Option<Vec<f64>>> {
+        let one = |theta: &Vec<f64>| {
+            let left = self.left(&self.knobs(theta));
+            left.iter().all(|left| left.is_finite()).then_some(left)
+        };
+        points.iter().map(one).collect()
+    }
+
+    fn scales(&self) -> Vec<f64> {
+        self.scales.clone()
+    }
+
+    fn bounds(&self) -> Option<&Bounds> {
+        Some(&self.bounds)
+    }
+}
+
+fn squares(values: &[f64]) -> f64 {
+    values.iter().map(|value| value * value).sum()
+}
+
+/// Coefficients by linear regression, the other knobs being what they are.
+fn regressed(parts: &[Part], start: &[Vec<f64>], z: &[f64], w: &[f64]) -> Option<Vec<Vec<f64>>> {
+    let mut columns = vec![];
+    let mut places = vec![];
+    for (number, (part, start)) in parts.iter().zip(start).enumerate() {
+        let knobs = part.law.card().knobs;
+        let coefficient = |i: &usize| knobs[*i].role == Role::Coefficient;
+        for i in open(part.law.as_ref()).filter(coefficient) {
+            let mut only = start.clone();
+            (0..knobs.len()).filter(coefficient).for_each(|j| only[j] = 0.0);
+            only[i] = 1.0;
+            columns.push(DVector::from_vec(values(part.law.as_ref(), &only, z)));
+            places.push((number, i));
+        }
+    }
+    let mut knobs = start.to_vec();
+    if columns.is_empty() {
+        return Some(knobs);
+    }
+    let a = DMatrix::from_columns(&columns);
+    let scale: Vec<f64> = a.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
+    let scaled = DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)] / scale[j]);
+    let found = scaled.svd(true, true).solve(&DVector::from_column_slice(w), 1e-10).ok()?;
+    for ((&(part, knob), value), scale) in places.iter().zip(found.iter()).zip(&scale) {
+        knobs[part][knob] = value / scale;
+    }
+    Some(knobs)
+}
+
+/// Fits all knobs of a sum from one start.
+fn fitted(
+    parts: &[Part],
+    start: &[Vec<f64>],
+    ranges: &[Bounds],
+    z: &[f64],
+    w: &[f64],
+) -> Option<(Vec<Vec<f64>>, f64)> {
+    let start = regressed(parts, start, z, w)?;
+    let places: Vec<(usize, usize)> = (parts.iter().enumerate())
+        .flat_map(|(number, part)| open(part.law.as_ref()).map(move |knob| (number, knob)))
+        .collect();
+    let of = |from: &dyn Fn(usize, usize) -> f64| {
+        places.iter().map(|&(part, knob)| from(part, knob)).collect::<Vec<f64>>()
+    };
+    let bounds = Bounds {
+        lower: of(&|part, knob| ranges[part].lower[knob]),
+        upper: of(&|part, knob| ranges[part].upper[knob]),
+    };
+    let mut theta = of(&|part, knob| start[part][knob]);
+    for (value, (low, high)) in theta.iter_mut().zip(bounds.lower.iter().zip(&bounds.upper)) {
+        *value = value.max(*low).min(*high);
+    }
+    let scales = theta.iter().map(|value| if *value == 0.0 { 1.0 } else { value.abs() }).collect();
+    let sum = Sum { parts, places, start, bounds, scales, z, w };
+    LevenbergMarquardt::default().fit(&sum, &mut theta, &mut ()).ok()?;
+    let knobs = sum.knobs(&theta);
+    let left = squares(&sum.left(&knobs));
+    left.is_finite().then_some((knobs, left))
+}
+
+/// The parts with other knobs.
+fn with(parts: &[Part], knobs: &[Vec<f64>]) -> Option<Vec<Part>> {
+    let each = parts.iter().zip(knobs).map(|(part, knobs)| {
+        let law = part.law.with_values(knobs).ok()?;
+        Some(Part { effect: part.effect.clone(), law })
+    });
+    each.collect()
+}
+
+/// One law from all of its starts.
+pub(super) fn one(
+    name: &str,
+    law: &dyn CandidateEffect,
+    view: &View,
+    z: &[f64],
+    w: &[f64],
+) -> Option<Fitted> {
+    let search = law.search(view);
+    let ranges = vec![Bounds { lower: search.min, upper: search.max }];
+    let parts = vec![Part { effect: name.into(), law: law.boxed() }];
+    let each = search.starts.into_iter();
+    let each = each.filter_map(|start| fitted(&parts, &[start], &ranges, z, w));
+    let (knobs, squares) = each.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Fitted { parts: with(&parts, &knobs)?, squares, ranges })
+}
+
+/// The sum of two laws, from where each was best alone.
+pub(super) fn two(first: &Fitted, second: &Fitted, z: &[f64], w: &[f64]) -> Option<Fitted> {
+    let parts = [&first.parts[..], &second.parts[..]].concat();
+    let ranges: Vec<Bounds> = first.ranges.iter().chain(&second.ranges).cloned().collect();
+    let start: Vec<Vec<f64>> = parts.iter().map(|part| part.law.card().values()).collect();
+    let (knobs, squares) = fitted(&parts, &start, &ranges, z, w)?;
+    Some(Fitted { parts: with(&parts, &knobs)?, squares, ranges })
+}
+
+/// Squares that are left by straight lines between knots that lie as densely as the data.
+pub(super) fn free(curve: &[Drawn], knots: usize, z: &[f64], w: &[f64]) -> Option<f64> {
+    let last = curve.len().checked_sub(1)?;
+    let mut at: Vec<f64> = (0..knots).map(|i| curve[i * last / (knots - 1)].z).collect();
+    at.dedup_by(|a, b| *a <= *b);
+    if at.len() < 2 {
+        return None;
+    }
+    let hat = |i: usize, z: f64| {
+        let z = z.clamp(at[0], at[at.len() - 1]);
+        let up = if i == 0 { 1.0 } else { (z - at[i - 1]) / (at[i] - at[i - 1]) };
+        let down = if i + 1 == at.len() { 1.0 } else { (at[i + 1] - z) / (at[i + 1] - at[i]) };
+        up.min(down).clamp(0.0, 1.0)
+    };
+    let a = DMatrix::from_fn(z.len(), at.len(), |k, i| hat(i, z[k]));
+    let right = DVector::from_column_slice(w);
+    let found = a.clone().svd(true, true).solve(&right, 1e-10).ok()?;
+    Some((right - a * found).norm_squared())
+}
