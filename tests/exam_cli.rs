@@ -113,7 +113,7 @@ fn an_exam_that_is_written_is_marked_as_the_study_marks_it() {
     let run: Value = serde_json::from_str(&place.done(&format!("simulate {files}"))).unwrap();
     assert!(run["metrics"]["y"]["nrmse"].as_f64().unwrap() < 1e-6, "{run}");
     // how sure it was
-    place.done("exam calibrate whole --commit 0123abc --out calibration.json");
+    place.done("exam calibrate marks --commit 0123abc --out calibration.json");
     let told: Value = serde_json::from_str(&place.read("calibration.json")).unwrap();
     assert_eq!((&told["commit"], &told["seeds"]), (&json!("0123abc"), &json!([3])));
     let singles = &told["calibration"]["rows"][1];

@@ -42,6 +42,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
             if open > 0 {
                 look.say(&format!("{open} cases have no answer; nothing was found in them."));
             }
+            result.keep(&args.out)?;
             finish(&result, &args.out, look)
         }
         ExamVerb::Calibrate(args) => {

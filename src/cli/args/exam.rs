@@ -30,7 +30,7 @@ pub enum ExamVerb {
     /// Says how sure what was told is: reliability, Brier score, coverage, rank histograms
     #[command(
         after_help = "Example:\n  lacuna exam calibrate exam-results --commit \"$(git rev-parse HEAD)\" --out calibration.json\n\n\
-        Takes folders that `study` wrote marks into."
+        Takes folders that `study` or `exam mark` wrote marks into."
     )]
     Calibrate(Calibrate),
 }

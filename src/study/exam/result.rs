@@ -68,6 +68,18 @@ impl ExamResult {
         Self::new(marks)
     }
 
+    /// Writes the marks of every case into `folder/marks`, as a study leaves them.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be written.
+    pub fn keep(&self, folder: &Path) -> Result<(), StudyError> {
+        let folder = folder.join("marks");
+        std::fs::create_dir_all(&folder).map_err(|error| StudyError::write(&folder, error))?;
+        let path = |marks: &Marks| folder.join(format!("{}.json", marks.case.key()));
+        self.marks.iter().try_for_each(|marks| crate::job::write(&path(marks), marks))
+    }
+
     /// Seeds of the exam: one, as marks of different seeds are of different exams.
     pub fn seeds(&self) -> BTreeSet<u64> {
         self.marks.iter().map(|m| m.seed).collect()

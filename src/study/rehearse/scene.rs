@@ -58,6 +58,16 @@ pub(super) fn position(system: &System, wanted: &str) -> Option<usize> {
     system.effects.iter().rposition(|p| name_of(p) == wanted)
 }
 
+/// Where the laws of a cause stand in a system: one, or those that it is a sum of.
+fn positions(system: &System, cause: &Cause) -> Vec<usize> {
+    let is_it = |p: &Placed| {
+        let law = p.effect.typetag_name();
+        (&p.into, &p.of) == (&cause.into, &cause.of)
+            && (law == cause.effect || cause.parts.iter().any(|part| part.effect == law))
+    };
+    (0..system.effects.len()).filter(|&at| is_it(&system.effects[at])).collect()
+}
+
 /// Names of the causes in the machine.
 pub(super) fn named(finding: &Finding) -> Vec<String> {
     finding.in_the_machine().map(name_of).collect()
@@ -202,18 +212,24 @@ fn sized(
         system.model = model;
         return Ok(Some((system, Some(new))));
     }
-    let Some(at) = position(&system, &name_of(cause)) else { return Ok(None) };
+    let all = positions(&system, cause);
+    if all.is_empty() {
+        return Ok(None);
+    }
     if factor == 0.0 {
-        system.effects.remove(at);
+        all.iter().rev().for_each(|&at| drop(system.effects.remove(at)));
         return Ok(Some((system, None)));
     }
-    let concealed = Concealed { placed: system.effects[at].clone(), size: vec![] };
-    let Ok(Some(grown)) = concealed.grown(factor, baseline) else { return Ok(None) };
     let first = cause.parameters.first().map(|p| p.name.clone());
-    let card = grown.effect.card();
-    let value =
-        card.knobs.iter().zip(card.values()).find(|(k, _)| Some(k.name.to_string()) == first);
-    let value = value.map(|(_, value)| value);
-    system.effects[at] = grown;
+    let mut value = None;
+    for at in all {
+        let concealed = Concealed { placed: system.effects[at].clone(), size: vec![] };
+        let Ok(Some(grown)) = concealed.grown(factor, baseline) else { return Ok(None) };
+        let card = grown.effect.card();
+        let mut known = card.knobs.iter().zip(card.values());
+        let own = known.find(|(knob, _)| Some(knob.name.to_string()) == first);
+        value = value.or(own.map(|(_, value)| value));
+        system.effects[at] = grown;
+    }
     Ok(Some((system, value)))
 }
