@@ -104,7 +104,7 @@ pub fn page(claims: &[(String, Claim)]) -> String {
         "# What was measured\n\n\
          Made from the files beside it by `cargo run --example results_page`; each is written by the command\n\
          that measured it. Times are of a shared machine with two cores and differ from hour to hour: read\n\
-         ratios. How a figure came about over the first eighteen decisions stands in\n\
+         ratios. The commit is that whose code was measured; before 2026-11-25, that which recorded the figure. How a figure came about over the first eighteen decisions stands in\n\
          [decisions/log.md](decisions/log.md); defects and what became of them in\n\
          [results/defects.md](results/defects.md).\n\n",
     );
