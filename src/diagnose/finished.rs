@@ -70,6 +70,11 @@ impl Finished {
         self.fitted.model.added.len()
     }
 
+    /// Whether its numbers were fitted to innovations: no free run was, and none has derivatives.
+    pub fn is_by_innovations(&self) -> bool {
+        self.fitted.columns.is_empty() && self.causes() > 0
+    }
+
     /// Whether no cause was found but what was known before: limits of the instruments.
     pub(super) fn found_nothing(&self) -> bool {
         self.causes() == self.fitted.model.known()

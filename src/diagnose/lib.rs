@@ -4,6 +4,7 @@ use lacuna_core::{
     data, digits, effect, evaluate, fault, model, optimise, real, register, statistics, system,
     watch,
 };
+use lacuna_likelihood as likelihood;
 use lacuna_plugins as plugins;
 
 mod accept;
@@ -34,6 +35,7 @@ mod floor;
 mod found;
 mod gain;
 mod grain;
+mod innovations;
 mod joint;
 mod learned;
 mod library;

@@ -6,6 +6,7 @@
 mod cause;
 mod column;
 mod notes;
+mod parts;
 mod plan;
 mod rest;
 mod size;
