@@ -21,7 +21,7 @@ use super::predictor::{Predictor, starts};
 use super::ranked::{FittedLaws, MISSING};
 use super::replay::Pass;
 use super::tangent::Site;
-use super::weigh::Weighed;
+use super::weigh::{Weighed, plainest};
 
 /// Log density by which held samples must speak for a cause.
 const REFUTED: f64 = 0.0;
@@ -88,7 +88,7 @@ impl Predictor {
             if found.is_empty() {
                 *nothing = 1.0 - survey.sets.iter().map(|set| set.probability).sum::<f64>();
             }
-            let Some(best) = survey.sets.first().filter(|set| set.log_odds > MISSING) else {
+            let Some(best) = plainest(&survey.sets).filter(|set| set.log_odds > MISSING) else {
                 break;
             };
             let known = found.iter().position(|cause| cause.place == best.place);
@@ -103,7 +103,7 @@ impl Predictor {
                     let parts = joined(&kept);
                     let rest = Hypothesis { parts, ..now.clone() };
                     let again = self.holding(&rest)?.survey(&now.noise, Some(old.place))?;
-                    let Some(first) = again.sets.first() else { break };
+                    let Some(first) = plainest(&again.sets) else { break };
                     let cause = self.of(&again, first);
                     // the place was chosen among all of them
                     (kept, Found { chosen_again: true, choice: old.choice, ..cause })

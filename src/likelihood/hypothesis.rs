@@ -158,7 +158,7 @@ impl Predictor {
     fn improved(&self, mut best: Hypothesis, mut run: Followed) -> Option<(Hypothesis, Followed)> {
         let mut damping = 1e-6;
         for _ in 0..ITERATIONS {
-            if !best.log_likelihood.is_finite() {
+            if !best.log_likelihood.is_finite() || best.numbers() == 0 {
                 return Some((best, run));
             }
             let columns = self.slopes(&best, &run);

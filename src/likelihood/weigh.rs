@@ -11,6 +11,24 @@ use super::ranked::FittedLaws;
 use super::screen::Spotted;
 use super::tangent::Site;
 
+/// How much less probable than the best a plainer set may be and still be the one that is named, as a
+/// natural logarithm of odds: hardly worth mentioning (Kass and Raftery, JASA 90, 1995).
+const AS_GOOD: f64 = 1.5;
+
+/// The plainest of the sets that are as probable as the first: fewest numbers, then plainest laws.
+pub(crate) fn plainest(sets: &[Weighed]) -> Option<&Weighed> {
+    let top = sets.first()?.log_odds;
+    let rank = |part: &Part| match part {
+        Part::Parameter(_) => 0,
+        Part::Law { law, .. } => u32::from(law.card.rank),
+    };
+    let order = |set: &&Weighed| {
+        let ranks: u32 = set.hypothesis.parts.iter().map(rank).sum();
+        (set.hypothesis.numbers(), ranks)
+    };
+    sets.iter().filter(|set| set.log_odds > top - AS_GOOD).min_by_key(order)
+}
+
 /// A fitted set of laws of one place, weighed.
 #[derive(Debug, Clone)]
 pub(crate) struct Weighed {
