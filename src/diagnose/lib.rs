@@ -107,7 +107,7 @@ pub use finding::{
     Curve, FalseDiscovery, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack, Ranked,
     RecordFacts, Scores, Series, Track, Verdict,
 };
-pub use note::Note;
+pub use note::{Disturbance, Disturbs, Note};
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
 pub use regime::Regime;
 pub use shown::InRecord;

@@ -1,20 +1,23 @@
 //! What has to be added at each channel for the model that was handed in to follow its records.
 
-use super::by_place::by_place;
 use super::compete::predictor;
 use crate::cause::{ExplainedBy, MissingForce};
 use crate::finished::Finished;
 use crate::library::Allowed;
+use crate::note::Note;
 use crate::prepared::Prepared;
 use crate::searched::Searched;
 
 /// Coordinates that are told of each channel.
 const TOLD: usize = 4;
 
-/// What a search says, with the missing force, and each place as one cause.
+/// What a search says, with the missing force and what disturbs the plant.
 pub(crate) fn completed(prepared: &Prepared<'_>, chosen: &Finished, of: Searched) -> Searched {
-    let of = Searched { missing: missing(prepared), ..of };
-    if chosen.is_by_innovations() { by_place(of) } else { of }
+    let mut of = Searched { missing: missing(prepared), ..of };
+    if let Some(disturbances) = chosen.inside.clone().filter(|all| !all.is_empty()) {
+        of.notes.push(Note::Inside { disturbances });
+    }
+    of
 }
 
 /// The missing force of every channel where one is seen; none where the records do not tell.

@@ -11,7 +11,6 @@
 //! Everything is compared by log L - (numbers) / 2 ln(samples) - ln(choices) on the same samples
 //! (Schwarz, Annals of Statistics 6, 1978; Ljung, "System Identification", 2nd ed., 1999, section 16.4).
 
-mod by_place;
 mod compete;
 mod missing;
 mod reconsidered;

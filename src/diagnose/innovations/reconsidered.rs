@@ -96,11 +96,11 @@ fn by_innovations(
     let held: Vec<_> = problem.choose.clone();
     let found = base.explain(most, &held, &|| watch.stopped()).ok()?;
     let of_answer = rivals.best() - taken(&base, answer);
-    let none = found.causes.is_empty() && answer.causes() == 0;
+    let none = found.causes.is_empty() && answer.causes() + answer.count_moved() == 0;
     if !none && found.criterion() <= of_answer {
         return None;
     }
-    let told = finished(prepared, allowed, answer, &found)?;
+    let told = finished(prepared, allowed, answer, (&base, &found))?;
     // a likelihood is exact, a model is not: what it predicts must not get worse
     let before = left(problem, &prepared.start)?;
     let after = left(problem, &told.fitted.model)?;

@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use crate::likelihood::{Explanation, NamedCause};
+use crate::likelihood::{Component, Explanation, NamedCause, Noise, Predictor};
 use nalgebra::{DMatrix, DVector};
 
 use crate::candidate::{Candidate, Wire};
@@ -14,6 +14,7 @@ use crate::finding::Track;
 use crate::finished::Finished;
 use crate::found::{Belief, Found, Posterior, Slot};
 use crate::library::{Allowed, library};
+use crate::note::{Disturbance, Disturbs};
 use crate::nuisance::{Key, Nuisance};
 use crate::precision::Precision;
 use crate::prepared::Prepared;
@@ -34,7 +35,7 @@ pub(super) fn finished(
     prepared: &Prepared<'_>,
     allowed: &Allowed,
     answer: &Finished,
-    found: &Explanation,
+    (of, found): (&Predictor, &Explanation),
 ) -> Option<Finished> {
     let problem = &prepared.problem;
     let known = library(problem, &prepared.nominal, &prepared.start, vec![], allowed);
@@ -85,7 +86,23 @@ pub(super) fn finished(
         y,
         // what innovations leave to no place is noise, also where a loop feeds it back
         dependence: 0.0,
+        inside: Some(disturbances(of, &found.noise)),
     })
+}
+
+/// What a noise is made of, beside the white noise of sensors.
+fn disturbances(of: &Predictor, noise: &Noise) -> Vec<Disturbance> {
+    let (forces, outputs) = (of.forces(), of.outputs());
+    let one = |component: Component| {
+        let (kind, (place, unit)) = match component {
+            Component::Measurement(_) => return None,
+            Component::White(c) => (Disturbs::White, forces.get(c)?.clone()),
+            Component::Slow(c) => (Disturbs::Slow, forces.get(c)?.clone()),
+            Component::Wander(o) => (Disturbs::Wander, outputs.get(o)?.clone()),
+        };
+        Some(Disturbance { place, kind, size: noise.variance(component).sqrt(), unit })
+    };
+    noise.components().into_iter().filter_map(one).collect()
 }
 
 /// A finding of innovations on other samples of the same records: its numbers as they are.

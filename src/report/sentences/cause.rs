@@ -5,7 +5,6 @@
 //! value plus w. So an offset of -0.08 rad on `angle` reads 0.08 rad too low.
 
 use super::column;
-use super::parts::beside;
 use super::size::{amplitude, factor, found_shape, unresolved, wave};
 use crate::diagnose::{ActsWhere, Cause, InRecord, Site, Value, Wording};
 use crate::digits::{interval, number, percent, spaced, with_unit};
@@ -73,7 +72,7 @@ fn body(cause: &Cause) -> String {
             });
             format!("Parameter {} drifts by {rate}{from}", cause.into)
         }
-        _ => format!("{}{}{}", place(cause), size(cause), beside(cause)),
+        _ => format!("{}{}", place(cause), size(cause)),
     }
 }
 

@@ -5,8 +5,8 @@
 
 mod cause;
 mod column;
+mod inside;
 mod notes;
-mod parts;
 mod plan;
 mod rest;
 mod size;
