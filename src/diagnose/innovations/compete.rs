@@ -34,36 +34,39 @@ pub(super) fn extended(of: &Predictor, by: &System, step: f64) -> Option<Predict
     of.extended_by(by, by.plan(step).ok()?)
 }
 
-/// An answer under both noise models.
+/// An answer under both noise models; absent where it cannot be run under one.
 pub(super) struct Rivals {
-    /// The error of a free run is autoregressive; absent where it cannot be run.
+    /// The error of a free run is autoregressive.
     pub outside: Option<Fitted>,
     /// Noise inside the plant too.
-    pub inside: Fitted,
+    pub inside: Option<Fitted>,
 }
 
 impl Rivals {
     /// Both fits.
-    pub fn of(predictor: &Predictor) -> Option<Self> {
+    pub fn of(predictor: &Predictor) -> Self {
         let (outside, inside) =
             rayon::join(|| predictor.fit_free_run().ok(), || predictor.fit_noise().ok());
-        Some(Self { outside, inside: inside? })
+        Self { outside, inside }
     }
 
-    /// By how much noise inside the plant is more probable.
-    pub fn inside_by(&self) -> f64 {
+    /// Whether noise inside the plant is clearly more probable, or cannot be asked for beside this
+    /// answer.
+    pub fn call_for_more(&self, clearly: f64) -> bool {
+        let Some(inside) = &self.inside else { return true };
         let outside = self.outside.as_ref().map_or(f64::NEG_INFINITY, Fitted::criterion);
-        self.inside.criterion() - outside
+        has_process(inside) && inside.criterion() - outside > clearly
     }
 
     /// The better criterion.
     pub fn best(&self) -> f64 {
-        self.inside.criterion() - self.inside_by().min(0.0)
+        let both = [&self.outside, &self.inside].into_iter().flatten().map(Fitted::criterion);
+        both.fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
 /// Whether the predictor's noise is inside the plant or wanders: without any it is a free run.
-pub(super) fn has_process(of: &Fitted) -> bool {
+fn has_process(of: &Fitted) -> bool {
     matches!(&of.noise, NoiseModel::Predictor(noise) if noise.has_process())
 }
 

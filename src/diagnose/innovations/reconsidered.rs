@@ -2,7 +2,7 @@
 
 use crate::likelihood::Predictor;
 
-use super::compete::{Rivals, extended, has_process, left, predictor, step};
+use super::compete::{Rivals, extended, left, predictor, step};
 use super::told::{carried_over, finished};
 use crate::error::DiagnoseError;
 use crate::finished::Finished;
@@ -88,8 +88,8 @@ fn by_innovations(
     let base = predictor(problem, &answer.fitted.model, allowed).ok()?;
     let system = prepared.teller().extend(&answer.fitted.model).ok()?;
     let known = extended(&base, &system, step(problem))?;
-    let rivals = Rivals::of(&known)?;
-    if rivals.inside_by() < CLEARLY || !has_process(&rivals.inside) || watch.stopped() {
+    let rivals = Rivals::of(&known);
+    if !rivals.call_for_more(CLEARLY) || watch.stopped() {
         return None;
     }
     watch.tell(0.92, "searching by innovations");
