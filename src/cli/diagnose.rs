@@ -9,9 +9,9 @@ use super::failure::Failure;
 use super::no_model::Asked;
 use super::outputs::{self, cannot_write};
 use super::{input, provenance, reported};
-use lacuna::data::{DataError, Record};
-use lacuna::diagnose::{Diagnosis, Finding, Outlook, Planner, Watch};
-use lacuna::estimate::linear_with;
+use lacuna::data::Record;
+use lacuna::diagnose::{Diagnosis, Finding, Planner};
+use lacuna::estimate::linear_baseline;
 use lacuna::file::{save_with, write_text};
 use lacuna::report::{Beside, Document, Provenance, Report, sentences};
 use lacuna::system::System;
@@ -91,19 +91,15 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     finish(&diagnosis, &records, test.as_ref(), results, look)
 }
 
-/// A linear model of the part of the records that the diagnosis fits to: the rest, by which causes
-/// are chosen and scored, stays unseen.
+/// The linear model that is diagnosed where there is no other; what it is, is said.
 fn linear_of(
     records: &[Record],
     has_test: bool,
     out: &Path,
     look: &Console,
 ) -> Result<System, Failure> {
-    let share = if has_test { 0.7 } else { 0.6 };
-    let first = |record: &Record| Ok(record.split(&[share])?.remove(0));
-    let parts: Vec<Record> = records.iter().map(first).collect::<Result<_, DataError>>()?;
     look.part(0.0, 0.2);
-    let found = linear_with(&parts, None, look)?;
+    let (found, share) = linear_baseline(records, has_test, look)?;
     look.part(0.2, 1.0);
     let header = ["Written by `lacuna diagnose`: a linear model of the record.".to_string()];
     save_with(&found.system, &out.join(LINEAR), &header)?;
@@ -117,27 +113,6 @@ fn linear_of(
         look.result(remark);
     }
     Ok(found.system)
-}
-
-/// The experiments that would tell look-alikes apart, where there are some.
-fn outlook(
-    finding: &Finding,
-    system: &System,
-    records: &[Record],
-    look: &Console,
-) -> Option<Outlook> {
-    let mut effects = vec![];
-    for cause in finding.causes.iter().filter(|cause| !cause.indistinguishable.is_empty()) {
-        effects.push(cause.effect.clone());
-        effects.extend(cause.indistinguishable.iter().map(|other| other.effect.clone()));
-    }
-    if effects.is_empty() || look.stopped() {
-        return None;
-    }
-    effects.sort();
-    effects.dedup();
-    // a report without it is a report all the same
-    Planner::of(system).only(&effects).run(records, look).ok()
 }
 
 /// Runs a diagnosis, writes its files and says what it found.
@@ -164,7 +139,7 @@ fn finish(
 ) -> Result<u8, Failure> {
     let Results { title, out, from } = results;
     let finding = diagnosis.run(records, test, look)?;
-    let outlook = outlook(&finding, diagnosis.system(), records, look);
+    let outlook = Planner::for_look_alikes(&finding, diagnosis.system(), records, look);
     look.clear();
     let headline = sentences::headline(&finding);
     let mut header = vec!["Written by `lacuna diagnose`.".to_string()];

@@ -166,7 +166,7 @@ pub(super) fn column(
 }
 
 /// The second column of a name, and the number of the first.
-fn twice(columns: &[Column]) -> Option<(String, usize)> {
+pub(super) fn twice(columns: &[Column]) -> Option<(String, usize)> {
     let mut known = BTreeMap::new();
     columns
         .iter()

@@ -5,9 +5,9 @@
 
 use serde::Serialize;
 
-use super::provenance::Provenance;
-use super::sentences;
 use crate::diagnose::{Cause, Finding, Withdrawn};
+use crate::provenance::Provenance;
+use crate::sentences;
 
 /// Version of the form.
 const SCHEMA: u32 = 1;
