@@ -1,5 +1,5 @@
 //! Plants that are disturbed themselves: process noise, noisy inputs, wandering sensors, an integrator
-//! in a closed loop. Nothing hidden: nothing named; one effect at g = 1: named, place and law.
+//! in a closed loop. Nothing hidden: nothing named; one effect of some size: named, place and law.
 //!
 //! g = 1: what the effect adds to the outputs is as large (RMS) as what all noise adds.
 
@@ -7,45 +7,17 @@
 #[path = "../../src/likelihood/tests/plants.rs"]
 mod plants;
 
+mod more;
+
 use lacuna::data::{Record, Signal};
 use lacuna::diagnose::{Diagnosis, Finding};
 use lacuna::likelihood::Predictor;
 use lacuna::system::System;
 
+use self::more::{FAN, VESSELS};
 use self::plants::{
     GANTRY, OSCILLATOR, SLIDE, Sizes, excitation, simulate, simulate_by, system, with,
 };
-
-/// Two vessels, one into the other, by Torricelli's law: the second level is measured.
-const VESSELS: &str = r#"
-sampling_time = 2.0
-integrator = { method = "rk4", substeps = 2 }
-[model.equations]
-inputs = [{ name = "feed", unit = "l/s" }]
-states = [
-  { name = "h1", unit = "m", derivative = "(0.5 + feed - k1*sqrt(max(h1, 0)))/a1", initial = 1.0 },
-  { name = "h2", unit = "m", derivative = "(k1*sqrt(max(h1, 0)) - k2*sqrt(max(h2, 0)))/a2", initial = 1.0 },
-]
-outputs = [{ name = "upper", unit = "m", value = "h1" }, { name = "lower", unit = "m", value = "h2" }]
-parameters = [{ name = "k1", value = 0.5, min = 0.0 }, { name = "k2", value = 0.5, min = 0.0 }, { name = "a1", value = 20.0, min = 0.0 }, { name = "a2", value = 30.0, min = 0.0 }]
-channels = [{ name = "into_upper", unit = "l/s", into = [{ state = "h1", gain = "1/a1" }] }, { name = "into_lower", unit = "l/s", into = [{ state = "h2", gain = "1/a2" }] }]
-coordinates = [{ name = "level_1", unit = "m", value = "h1", quantity = "level" }, { name = "level_2", unit = "m", value = "h2", quantity = "level" }]
-"#;
-
-/// A motor with a fan: current and speed are measured.
-const FAN: &str = r#"
-sampling_time = 0.01
-[model.equations]
-inputs = [{ name = "supply", unit = "V" }]
-states = [
-  { name = "i", unit = "A", derivative = "(supply - R*i - k*w)/L" },
-  { name = "w", unit = "rad/s", derivative = "(k*i - b*w)/J" },
-]
-outputs = [{ name = "current", unit = "A", value = "i" }, { name = "speed", unit = "rad/s", value = "w" }]
-parameters = [{ name = "R", value = 1.2, min = 0.0 }, { name = "L", value = 0.05, min = 0.0 }, { name = "k", value = 0.3 }, { name = "J", value = 0.02, min = 0.0 }, { name = "b", value = 0.01 }]
-channels = [{ name = "on_shaft", unit = "N m", into = [{ state = "w", gain = "1/J" }] }, { name = "in_coil", unit = "V", into = [{ state = "i", gain = "1/L" }] }]
-coordinates = [{ name = "turning", unit = "rad/s", value = "w", quantity = "velocity" }, { name = "flow", unit = "A", value = "i", quantity = "current" }]
-"#;
 
 /// What disturbs a plant.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,6 +36,9 @@ struct Case {
     kind: Kind,
     drive: f64,
     noise: Sizes,
+    /// Size of the effect that its law takes to be told from a parameter, beside noise of the same
+    /// frequencies.
+    g: f64,
     effect: &'static str,
     into: &'static str,
     of: &'static str,
@@ -88,6 +63,7 @@ fn cases() -> Vec<Case> {
             kind: Kind::Process,
             drive: 1.0,
             noise: noise(&[0.3, 0.0], &[0.1], &[]),
+            g: 3.0,
             effect: "coulomb_friction",
             into: "on_mass",
             of: "rate",
@@ -99,6 +75,7 @@ fn cases() -> Vec<Case> {
             kind: Kind::Process,
             drive: 1.0,
             noise: noise(&[0.3, 0.0], &[0.1], &[]),
+            g: 3.0,
             effect: "cubic",
             into: "on_mass",
             of: "place",
@@ -110,6 +87,7 @@ fn cases() -> Vec<Case> {
             kind: Kind::Input,
             drive: 20.0,
             noise: noise(&[0.0, 0.0, 3.0], &[0.001, 0.002], &[]),
+            g: 1.0,
             effect: "coulomb_friction",
             into: "on_trolley",
             of: "trolley_speed",
@@ -121,6 +99,7 @@ fn cases() -> Vec<Case> {
             kind: Kind::Input,
             drive: 0.08,
             noise: noise(&[0.0, 0.0, 0.03], &[0.002, 0.002], &[]),
+            g: 1.0,
             effect: "quadratic",
             into: "into_lower",
             of: "level_2",
@@ -132,6 +111,7 @@ fn cases() -> Vec<Case> {
             kind: Kind::Wander,
             drive: 4.0,
             noise: noise(&[], &[0.02, 0.1], &[0.004, 0.02]),
+            g: 1.0,
             effect: "drag",
             into: "on_shaft",
             of: "turning",
@@ -143,6 +123,7 @@ fn cases() -> Vec<Case> {
             kind: Kind::Loop,
             drive: 0.1,
             noise: noise(&[1.0, 0.0], &[1e-4], &[]),
+            g: 1.0,
             effect: "coulomb_friction",
             into: "on_slide",
             of: "speed",
@@ -237,7 +218,7 @@ fn nothing_is_named_where_only_noise_disturbs() {
 #[test]
 fn an_effect_is_named_beside_noise_inside_the_plant() {
     for case in cases() {
-        let finding = case.finding(case.as_large_as_noise(), 3000, 32);
+        let finding = case.finding(case.g * case.as_large_as_noise(), 3000, 32);
         let (named, said) = case.judged(&finding);
         assert!(named, "{}: {said}", case.name);
     }
@@ -274,10 +255,10 @@ fn causes_are_explained_together_and_the_rest_is_noise() {
 fn rates() {
     let seeds: u64 = std::env::var("SEEDS").ok().and_then(|s| s.parse().ok()).unwrap_or(20);
     let only = std::env::var("ONLY").unwrap_or_default();
-    println!("| plant | nothing hidden: named | effect at g = 1: named first | seconds |");
-    println!("| --- | --- | --- | --- |");
+    println!("| plant | nothing hidden: named | g | effect named first | seconds |");
+    println!("| --- | --- | --- | --- | --- |");
     for case in cases().iter().filter(|case| case.name.contains(&only)) {
-        let size = case.as_large_as_noise();
+        let size = case.g * case.as_large_as_noise();
         let (mut wrong, mut right, mut seconds) = (0, 0, 0.0);
         for seed in 0..seeds {
             let nothing = case.finding(0.0, 3000, 200 + seed);
@@ -295,6 +276,9 @@ fn rates() {
             );
         }
         let each = seconds / (2.0 * seeds as f64);
-        println!("| {} | {wrong} of {seeds} | {right} of {seeds} | {each:.1} |", case.name);
+        println!(
+            "| {} | {wrong} of {seeds} | {} | {right} of {seeds} | {each:.1} |",
+            case.name, case.g
+        );
     }
 }
