@@ -123,7 +123,7 @@ fn fields() -> String {
         let title = word(&schema, "title");
         let _ = write!(
             page,
-            "\n## {name}\n\n{title}\n\n| field | type | always there |\n| --- | --- | --- |\n"
+            "\n## {name}\n\n{title}\n\n| field | type | always there | what it is |\n| --- | --- | --- | --- |\n"
         );
         below_schema(&schema, "", &mut page);
     }
@@ -135,7 +135,8 @@ fn below_schema(schema: &Value, path: &str, page: &mut String) {
     for (key, own) in schema["properties"].as_object().into_iter().flatten() {
         let full = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
         let there = if required.iter().any(|name| name == key) { "yes" } else { "" };
-        let _ = writeln!(page, "| `{full}` | {} | {there} |", kind(own));
+        let _ =
+            writeln!(page, "| `{full}` | {} | {there} | {} |", kind(own), word(own, "description"));
         nested(own, &full, page);
     }
 }
@@ -146,7 +147,12 @@ fn nested(own: &Value, full: &str, page: &mut String) {
         if deeper.is_object() {
             let path = format!("{full}{mark}");
             if !deeper["properties"].is_object() {
-                let _ = writeln!(page, "| `{path}` | {} | |", kind(deeper));
+                let _ = writeln!(
+                    page,
+                    "| `{path}` | {} | | {} |",
+                    kind(deeper),
+                    word(deeper, "description")
+                );
             }
             nested(deeper, &path, page);
         }

@@ -37,7 +37,7 @@ fn begins(line: &str, shown: &str) -> bool {
         let Some(word) = words.next() else { return false };
         match (bare(word).parse::<f64>(), bare(wanted).parse::<f64>()) {
             (Ok(a), Ok(b)) => (a - b).abs() <= a.abs().max(b.abs()) / 3.0,
-            _ => word == wanted,
+            _ => bare(word) == bare(wanted),
         }
     })
 }

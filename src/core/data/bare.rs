@@ -92,7 +92,7 @@ impl Table {
         bare: &Bare,
     ) -> Result<(Record, Vec<Remark>), DataError> {
         if let Some(name) = outputs.iter().find(|name| inputs.contains(name)) {
-            return Err(DataError::Choice {
+            return Err(DataError::Roles {
                 at: Box::new(Place { key: Some(name.clone()), ..Place::default() }),
                 problem: format!("`{name}` cannot be an input and an output"),
                 remedy: "name each column once, with --inputs or with --outputs".into(),
@@ -120,7 +120,7 @@ impl Table {
         }
         let known: Vec<&str> =
             self.names().into_iter().filter(|name| !matches!(*name, "" | "time")).collect();
-        Err(DataError::Choice {
+        Err(DataError::Roles {
             at: Box::new(Place { file: Some(self.source().into()), ..Place::default() }),
             problem: format!(
                 "no column is called {letter} or {letter}1, so the {role} are not known; there are: {}",

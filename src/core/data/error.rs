@@ -97,6 +97,16 @@ pub enum DataError {
         /// What to try.
         remedy: String,
     },
+    /// Columns of which nothing tells what they are: inputs or outputs.
+    #[error("{}{problem}", .at.lead())]
+    Roles {
+        /// The file, or the column as key.
+        at: Box<Place>,
+        /// What is not told.
+        problem: String,
+        /// What to try.
+        remedy: String,
+    },
     /// Numbers, or nothing, where the column names should be.
     #[error("{}found `{found}` where the column names belong", .at.lead())]
     NoHeader {
