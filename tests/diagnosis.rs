@@ -3,6 +3,7 @@
 //! One binary for all, because linking costs more than compiling.
 
 mod data_faults;
+mod disturbed;
 mod exam;
 mod first_use;
 mod hard_plants;

@@ -7,6 +7,7 @@ use super::distortion::distortion;
 use super::error::DiagnoseError;
 use super::faults::{Fault, coarse};
 use super::finding::{Finding, RecordFacts, Verdict};
+use super::innovations;
 use super::library::{Allowed, Method};
 use super::mended::Mended;
 use super::note::Note;
@@ -255,12 +256,12 @@ impl<'a> Diagnosis<'a> {
         let mut whole = Prepared::new(self.system, used, share)?;
         let windows = windows(used);
         let (chosen, other) = match &windows {
-            None => whole.search(&self.allowed, most, watch)?,
+            None => innovations::search(&mut whole, &self.allowed, most, watch)?,
             Some(windows) => {
                 let mut part = Prepared::new(self.system, windows, share)?;
-                let (chosen, other) = part.search(&self.allowed, most, watch)?;
+                let (chosen, other) = innovations::search(&mut part, &self.allowed, most, watch)?;
                 watch.tell(0.95, "fitting to all samples");
-                let chosen = whole.finish(&self.allowed, chosen)?;
+                let chosen = innovations::finish(&mut whole, &self.allowed, chosen)?;
                 (chosen, other.map(|other| whole.finish(&self.allowed, other)).transpose()?)
             }
         };
@@ -268,7 +269,8 @@ impl<'a> Diagnosis<'a> {
         let firsts = firsts(records);
         let (start, fixed) = (&whole.start, &self.allowed.fixed);
         let from = Source { start, test: &test, used, firsts: &firsts, fixed };
-        whole.teller().tell(&chosen, other.as_ref(), &from)
+        let searched = whole.teller().tell(&chosen, other.as_ref(), &from)?;
+        Ok(innovations::completed(&whole, &chosen, searched))
     }
 
     /// Says at which sample a baseline leaves the finite numbers, if it does.

@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector};
 use super::candidate::{NUMBER, Wire};
 use super::finding::{Moved, Track};
 use super::found::Found;
+use super::note::Disturbance;
 use super::nuisance::{Key, Nuisance, PRIOR};
 use super::precision::Precision;
 use super::refit::Fitted;
@@ -30,6 +31,8 @@ pub(crate) struct Finished {
     pub y: Arc<Vec<Vec<f64>>>,
     /// Score that what is left depends on the inputs.
     pub dependence: f64,
+    /// Noise inside the plant, where causes were found beside it, by innovations.
+    pub inside: Option<Vec<Disturbance>>,
 }
 
 /// Whether the free parameters, all together, are further from where they began than their
@@ -68,6 +71,11 @@ impl Finished {
     /// How many causes it added; those of a finding begin with them.
     pub fn causes(&self) -> usize {
         self.fitted.model.added.len()
+    }
+
+    /// Whether its numbers were fitted to innovations, not to a free run.
+    pub fn is_by_innovations(&self) -> bool {
+        self.inside.is_some()
     }
 
     /// Whether no cause was found but what was known before: limits of the instruments.

@@ -4,6 +4,7 @@ use lacuna_core::{
     data, digits, effect, evaluate, fault, model, optimise, real, register, statistics, system,
     watch,
 };
+use lacuna_likelihood as likelihood;
 use lacuna_plugins as plugins;
 
 mod accept;
@@ -35,6 +36,7 @@ mod floor;
 mod found;
 mod gain;
 mod grain;
+mod innovations;
 mod joint;
 mod learned;
 mod library;
@@ -107,7 +109,7 @@ pub use finding::{
     Curve, FalseDiscovery, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack, Ranked,
     RecordFacts, Scores, Series, Track, Verdict,
 };
-pub use note::Note;
+pub use note::{Disturbance, Disturbs, Note};
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
 pub use regime::Regime;
 pub use shown::InRecord;

@@ -82,6 +82,11 @@ pub enum Note {
         /// Sum of the shares of each, over that.
         each: f64,
     },
+    /// Noise inside the plant, and sensors that wander: what is not explained by causes.
+    Inside {
+        /// All of it.
+        disturbances: Vec<Disturbance>,
+    },
     /// No cause was good enough; a curve of this coordinate comes nearest.
     Nearest {
         /// Channel.
@@ -91,4 +96,29 @@ pub enum Note {
         /// Share of what is left that it predicts where it was not fitted.
         share: f64,
     },
+}
+
+/// Noise that is not the white noise of a sensor.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Disturbance {
+    /// Channel, input or output.
+    pub place: String,
+    /// What it is.
+    pub kind: Disturbs,
+    /// Standard deviation: of the force in each sample, of its change from sample to sample, or of that of
+    /// a reading.
+    pub size: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// How a disturbance goes with time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Disturbs {
+    /// A force, or what acts beside a recorded input, anew in every sample.
+    White,
+    /// A force that changes slowly.
+    Slow,
+    /// A reading that wanders.
+    Wander,
 }

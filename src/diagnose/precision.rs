@@ -43,6 +43,11 @@ impl Precision {
         Some(Self { keys: fitted.keys.clone(), covariance })
     }
 
+    /// Of keys whose covariance is known from elsewhere.
+    pub fn of(keys: Vec<Key>, covariance: DMatrix<f64>) -> Self {
+        Self { keys, covariance }
+    }
+
     /// What moved.
     pub fn keys(&self) -> &[Key] {
         &self.keys

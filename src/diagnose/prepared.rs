@@ -111,7 +111,12 @@ impl<'a> Prepared<'a> {
         watch: &dyn Watch,
     ) -> Result<(Finished, Option<Finished>), DiagnoseError> {
         let found = self.tracks(allowed, most, watch).run();
-        found.ok_or_else(|| diverges(&self.source).into())
+        found.ok_or_else(|| self.diverges())
+    }
+
+    /// The baseline leads nowhere.
+    pub fn diverges(&self) -> DiagnoseError {
+        diverges(&self.source).into()
     }
 
     /// What a search over windows found, fitted to these records.
@@ -134,7 +139,7 @@ impl<'a> Prepared<'a> {
         }
         of_all.spikes = self.problem.spikes();
         let finished = self.tracks(allowed, 0, &()).finish(found.track, of_all, nuisance);
-        finished.ok_or_else(|| diverges(&self.source).into())
+        finished.ok_or_else(|| self.diverges())
     }
 
     fn tracks<'t>(

@@ -275,6 +275,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
             moved_together,
             y,
             dependence,
+            inside: None,
         };
         let mut moved = finished.went(&self.problem.base.signals);
         moved.retain(Moved::is_far);

@@ -48,6 +48,8 @@ pub(crate) struct Followed {
     pub path: Path,
     /// Output and sample of every innovation that was gated.
     pub outliers: Vec<(usize, usize)>,
+    /// Log density of every output at every sample, given all before; 0 where nothing was measured.
+    pub densities: Vec<f64>,
     /// Sample at which it left the finite numbers.
     pub diverged_at: Option<usize>,
 }
@@ -79,6 +81,7 @@ pub(crate) fn follow(
         log_likelihood: 0.0,
         path: Path::default(),
         outliers: vec![],
+        densities: vec![0.0; len * ny],
         diverged_at: None,
     };
     for (number, segment) in drive.segments.iter().enumerate() {
@@ -109,9 +112,9 @@ pub(crate) fn follow(
                     let s = kalman.gain(noise.measurement[o]);
                     let over = own.abs() / s.sqrt() / gate;
                     if over > 1.0 {
-                        found.log_likelihood -= 0.5
-                            * ((std::f64::consts::TAU * s).ln() + gate * gate)
-                            + (TAIL + 1.0) * over.ln();
+                        let normal = 0.5 * ((std::f64::consts::TAU * s).ln() + gate * gate);
+                        found.densities[at] = -normal - (TAIL + 1.0) * over.ln();
+                        found.log_likelihood += found.densities[at];
                         found.outliers.push((o, k));
                         row[o] += 1;
                         continue;
@@ -121,7 +124,8 @@ pub(crate) fn follow(
                 path.e[at] = e;
                 let s = kalman.update(noise.measurement[o]);
                 slow.iter_mut().zip(&kalman.k).for_each(|(x, k)| *x += k * own);
-                found.log_likelihood -= 0.5 * ((std::f64::consts::TAU * s).ln() + own * own / s);
+                found.densities[at] = -0.5 * ((std::f64::consts::TAU * s).ln() + own * own / s);
+                found.log_likelihood += found.densities[at];
             }
             path.jump[k * n..][..n].copy_from_slice(&slow[..n]);
             x.iter_mut().zip(&slow[..n]).for_each(|(x, jump)| *x += jump);

@@ -142,7 +142,11 @@ impl Predictor {
         }
     }
 
-    fn evaluated(&self, of: Hypothesis) -> Result<(Hypothesis, Followed), LikelihoodError> {
+    /// The exact likelihood of a hypothesis, and its run.
+    pub(crate) fn evaluated(
+        &self,
+        of: Hypothesis,
+    ) -> Result<(Hypothesis, Followed), LikelihoodError> {
         let model = self.extended(&of.parts, &of.theta)?;
         let theta = of.parts.iter().any(|part| matches!(part, Part::Parameter(_)));
         let wanted = Wanted { theta, seen: true, gate: Some(self.gate()) };
@@ -154,7 +158,7 @@ impl Predictor {
     fn improved(&self, mut best: Hypothesis, mut run: Followed) -> Option<(Hypothesis, Followed)> {
         let mut damping = 1e-6;
         for _ in 0..ITERATIONS {
-            if !best.log_likelihood.is_finite() {
+            if !best.log_likelihood.is_finite() || best.numbers() == 0 {
                 return Some((best, run));
             }
             let columns = self.slopes(&best, &run);
@@ -188,7 +192,7 @@ impl Predictor {
     }
 
     /// One column per free number of a hypothesis.
-    fn slopes(&self, of: &Hypothesis, run: &Followed) -> Vec<(Site, Vec<f64>)> {
+    pub(crate) fn slopes(&self, of: &Hypothesis, run: &Followed) -> Vec<(Site, Vec<f64>)> {
         let path = &run.path;
         let entries = self.model.plan.sources.entries.len();
         let mut columns = vec![];

@@ -22,7 +22,10 @@ mod autoregressive;
 mod backward;
 mod error;
 mod evidence;
+mod explain;
+mod explanation;
 mod follow;
+mod held_out;
 mod hypothesis;
 mod intensities;
 mod kalman;
@@ -35,20 +38,25 @@ mod places;
 mod predictor;
 mod ranked;
 mod replay;
+mod scope;
 mod screen;
 mod select;
 mod sets;
 mod share;
+mod std_error;
 mod tangent;
+mod weigh;
 
 pub use autoregressive::Autoregression;
 pub use error::LikelihoodError;
+pub use explanation::{Explanation, NamedCause};
 pub use missing::{Explained, MissingForce};
 pub use model::{Fitted, NoiseModel};
 pub use noise::{Component, Noise, Slow};
 pub use places::places;
 pub use predictor::{Innovations, Predictor};
 pub use ranked::{FittedLaws, RankedPlace, RankedPlaces};
+pub use scope::Scope;
 
 #[cfg(test)]
 mod tests;

@@ -23,8 +23,10 @@ use super::predictor::Predictor;
 use super::ranked::{FittedLaws, RankedPlace, RankedPlaces};
 use super::replay::Pass;
 use super::screen::{Screened, Spotted};
+use super::select::Chosen;
 use super::sets::sets;
 use super::tangent::Site;
+use super::weigh::Weighed;
 use crate::data::Record;
 use crate::system::System;
 
@@ -48,6 +50,16 @@ pub fn places(system: &System, records: &[Record]) -> Result<RankedPlaces, Likel
     predictor.places(&first.noise)
 }
 
+/// What one more cause may be.
+pub(crate) struct Survey {
+    /// Without it.
+    pub null: Chosen,
+    /// Places, the most evident first.
+    pub places: Vec<RankedPlace>,
+    /// Sets of laws, the most probable first.
+    pub sets: Vec<Weighed>,
+}
+
 /// A place under its own noise.
 struct Led {
     spot: usize,
@@ -58,17 +70,46 @@ struct Led {
 
 impl Predictor {
     fn places(&self, noise: &Noise) -> Result<RankedPlaces, LikelihoodError> {
+        let Survey { null, mut places, sets } = self.survey(noise, None)?;
+        let sets: Vec<FittedLaws> = sets.into_iter().map(|set| self.told(set)).collect();
+        // an exact fit knows better than a curve on the old path
+        for place in &mut places {
+            let own = sets.iter().filter(|set| set.is_at(&place.into, place.of.as_deref()));
+            let exact = own.map(|set| set.log_odds).fold(f64::NEG_INFINITY, f64::max);
+            place.log_evidence = place.log_evidence.max(exact);
+        }
+        places.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+        Ok(RankedPlaces { noise: null.noise, log_likelihood: null.log_likelihood, places, sets })
+    }
+
+    /// Places and sets of laws of one cause, at one place only where that is given.
+    pub(crate) fn survey(
+        &self,
+        noise: &Noise,
+        at: Option<(Site, Option<usize>)>,
+    ) -> Result<Survey, LikelihoodError> {
         let null = self.renewed(&self.model, noise, 2)?;
         let wanted = Wanted { theta: true, seen: true, gate: Some(self.gate()) };
         let path = self.run(&self.model, &null.noise, wanted)?.path;
-        let spots = self.spots(&path)?;
+        let all = self.spots(&path)?;
+        let spots: Vec<Spotted> = match at {
+            None => all,
+            // the offset of its site is part of a place
+            Some((site, of)) => {
+                let own = |s: &Spotted| s.site == site && (s.source == of || s.source.is_none());
+                all.into_iter().filter(own).collect()
+            }
+        };
         let base = Pass::of(&path, &null.noise, false).log_likelihood;
         let mut noises = vec![null.noise.clone()];
         noises.extend(self.whitened(&path, &null.noise));
         let mut led: Vec<Led> =
             noises.iter().flat_map(|noise| self.led(&path, noise, &spots, base)).collect();
+        if let Some(place) = at {
+            led.retain(|led| spots[led.spot].place() == place);
+        }
         led.sort_by(|a, b| b.value.total_cmp(&a.value));
-        let mut places = self.ranked(&spots, &led);
+        let places = self.ranked(&spots, &led);
         let nothing = Hypothesis {
             parts: vec![],
             theta: self.model.theta.clone(),
@@ -85,14 +126,7 @@ impl Predictor {
             fitted.extend(self.fitted(&path, &spots, place));
         }
         let sets = self.weighed(&nothing, fitted, &spots);
-        // an exact fit knows better than a curve on the old path
-        for place in &mut places {
-            let own = sets.iter().filter(|set| set.is_at(&place.into, place.of.as_deref()));
-            let exact = own.map(|set| set.log_odds).fold(f64::NEG_INFINITY, f64::max);
-            place.log_evidence = place.log_evidence.max(exact);
-        }
-        places.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
-        Ok(RankedPlaces { noise: null.noise, log_likelihood: null.log_likelihood, places, sets })
+        Ok(Survey { null, places, sets })
     }
 
     /// The noise without its slow parts, a white force on the channel in their place.
@@ -213,58 +247,4 @@ impl Predictor {
         }
         found.into_iter().map(|h| (h, place.spot)).collect()
     }
-
-    /// All fitted sets by their odds against nothing, with probabilities.
-    fn weighed(
-        &self,
-        nothing: &Hypothesis,
-        fitted: Vec<(Hypothesis, usize)>,
-        spots: &[Spotted],
-    ) -> Vec<FittedLaws> {
-        let samples = self.observed();
-        let base = nothing.criterion(samples);
-        let count = |spot: &Spotted| {
-            let mut names: Vec<&str> = spot.laws.iter().map(|law| law.name).collect();
-            names.dedup();
-            names.len() as f64
-        };
-        // a place among all places, then a set among all sets of its size
-        let mut found: Vec<(f64, Hypothesis)> = fitted
-            .into_iter()
-            .map(|(h, spot)| {
-                let sets = log_choose(count(&spots[spot]).max(1.0), h.parts.len() as f64);
-                let cost = (spots.len() as f64).ln() + sets;
-                (h.criterion(samples) - base - cost, h)
-            })
-            .collect();
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let odds: Vec<f64> = found.iter().map(|(odds, _)| *odds).chain([0.0]).collect();
-        let all = super::evidence::log_sum(&odds);
-        let parameters = |h: &Hypothesis| {
-            h.parts
-                .iter()
-                .filter_map(|part| match part {
-                    Part::Parameter(p) => Some((self.name(Site::Parameter(*p)), h.theta[*p])),
-                    Part::Law { .. } => None,
-                })
-                .collect()
-        };
-        found
-            .into_iter()
-            .map(|(log_odds, h)| FittedLaws {
-                laws: self.placed(&h.parts),
-                parameters: parameters(&h),
-                log_likelihood: h.log_likelihood,
-                probability: (log_odds - all).exp(),
-                noise: h.noise,
-                log_odds,
-            })
-            .collect()
-    }
-}
-
-/// ln of the number of sets of `k` out of `n`.
-fn log_choose(n: f64, k: f64) -> f64 {
-    let k = k.min(n);
-    (0..k as usize).map(|i| ((n - i as f64) / (i as f64 + 1.0)).ln()).sum()
 }

@@ -11,6 +11,7 @@ use super::follow::{Followed, Start, Wanted, follow};
 use super::noise::{Layout, Noise};
 use super::path::Path;
 use super::replay::Pass;
+use super::scope::Scope;
 use crate::data::Record;
 use crate::evaluate::Run;
 use crate::system::{Drive, Plan, System};
@@ -29,7 +30,7 @@ pub(crate) struct Model {
 }
 
 /// A system and records, compiled for prediction.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Predictor {
     pub(crate) system: System,
     pub(crate) model: Model,
@@ -39,6 +40,8 @@ pub struct Predictor {
     pub(crate) start: Start,
     /// Standard deviation of every output.
     pub(crate) spread: Vec<f64>,
+    /// What may be missing.
+    pub(crate) scope: Scope,
 }
 
 /// What a predictor did not foresee.
@@ -93,8 +96,23 @@ impl Predictor {
             plan.get_or_insert(run.plan);
         }
         let Some(plan) = plan else { return Err(nothing) };
+        Self::joined(&system, plan, drive, measured)
+    }
+
+    /// The same from a compiled system, drives of all records one after the other, and all measured
+    /// outputs sample by sample, not a number where nothing was measured.
+    ///
+    /// # Errors
+    ///
+    /// If no output was measured.
+    pub fn joined(
+        system: &System,
+        plan: Plan,
+        drive: Drive,
+        measured: Vec<f64>,
+    ) -> Result<Self, LikelihoodError> {
         if !measured.iter().any(|y: &f64| y.is_finite()) {
-            return Err(nothing);
+            return Err(LikelihoodError::Nothing { records: drive.segments.len() });
         }
         let ny = plan.sizes.y;
         let spread = (0..ny).map(|o| deviation(&column(&measured, ny, o))).collect();
@@ -102,9 +120,47 @@ impl Predictor {
         let x = vec![plan.signals.initial()];
         let start = Start { x, p0: vec![0.0; plan.sizes.x] };
         let model = Model { plan, theta };
-        let mut predictor = Self { system, model, drive, measured, start, spread };
+        let (system, scope) = (system.clone(), Scope::default());
+        let mut predictor = Self { system, model, drive, measured, start, spread, scope };
         predictor.start.p0 = predictor.state_scales()?.iter().map(|s| s * s).collect();
         Ok(predictor)
+    }
+
+    /// Looks for what is in a scope only.
+    #[must_use]
+    pub fn within(mut self, scope: Scope) -> Self {
+        self.scope = scope;
+        self
+    }
+
+    /// Expects the states of every segment where they are said to begin, with the same uncertainty.
+    #[must_use]
+    pub fn starting(mut self, states: Vec<Vec<f64>>) -> Self {
+        if !states.is_empty() && states.iter().all(|x| x.len() == self.start.p0.len()) {
+            self.start.x = states;
+        }
+        self
+    }
+
+    /// The same records under an extended system, which begins as this one does; `None` where the
+    /// two do not have the same states.
+    pub fn extended_by(&self, system: &System, plan: Plan) -> Option<Self> {
+        let same = plan.sizes.x == self.start.p0.len() && plan.sizes.y == self.model.plan.sizes.y;
+        let theta = plan.signals.theta();
+        let (system, model) = (system.clone(), Model { plan, theta });
+        same.then(|| Self { system, model, ..self.clone() })
+    }
+
+    /// Measured outputs, each sample of each counted.
+    pub fn samples(&self) -> usize {
+        self.observed() as usize
+    }
+
+    /// Places that something missing may have: channels with coordinates, outputs, parameters.
+    pub fn places_count(&self) -> usize {
+        let plan = &self.model.plan;
+        let channels = plan.sizes.w + plan.sizes.u;
+        channels * plan.sources.named + 2 * plan.sizes.y + plan.signals.parameters.len()
     }
 
     /// Number of samples.

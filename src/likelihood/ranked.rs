@@ -5,7 +5,7 @@ use crate::system::{Placed, System};
 
 /// Log odds from which something is missing rather than nothing: 5, as in 150 to 1 (Kass and Raftery,
 /// JASA 90, 1995: very strong).
-const MISSING: f64 = 5.0;
+pub(crate) const MISSING: f64 = 5.0;
 
 /// Where something may be missing.
 #[derive(Debug, Clone)]

@@ -71,6 +71,7 @@ impl Predictor {
         let push = |site, source: Option<usize>, z: Vec<f64>, spot, scale, direction| {
             let own_path = matches!(spot, Spot::OwnPath { .. });
             let laws = laws(spot, &view(&z, own_path)).into_iter();
+            let laws = laws.filter(|law| self.scope.effect(law.name));
             let laws = laws.map(|law| law.signed(direction)).collect();
             let knots = knots(&z).unwrap_or_default();
             Spotted { site, source, z, knots, laws, scale }
@@ -107,14 +108,15 @@ impl Predictor {
             source: None,
             z: ones.clone(),
             knots: vec![],
-            laws: offsets(),
+            laws: offsets().into_iter().filter(|law| self.scope.effect(law.name)).collect(),
             scale,
         };
         found.extend(forces.into_iter().map(|c| offset(Site::Force(c), scales[c])));
         let outputs = (0..ny).filter(|&o| self.spread[o] > 0.0);
         found.extend(outputs.map(|o| offset(Site::Output(o), self.spread[o])));
         for (p, parameter) in plan.signals.parameters.iter().enumerate() {
-            if !parameter.fixed && path.theta.len() + path.c_theta.len() > 0 {
+            let free = !parameter.fixed && self.scope.parameter(&parameter.name);
+            if free && path.theta.len() + path.c_theta.len() > 0 {
                 let scale = PARAMETER * self.model.theta[p].abs();
                 let site = Site::Parameter(p);
                 let (z, knots, laws) = (ones.clone(), vec![], vec![]);
@@ -169,6 +171,11 @@ impl Spotted {
             columns.push(vec![1.0; self.z.len()]);
         }
         (columns.into_iter().map(|column| (self.site, column)).collect(), first)
+    }
+
+    /// Where it is.
+    pub fn place(&self) -> (Site, Option<usize>) {
+        (self.site, self.source)
     }
 
     /// Values of the free curve along the path.

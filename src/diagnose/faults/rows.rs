@@ -117,7 +117,7 @@ fn still(y: &[f64], simulated: &[f64]) -> Vec<(f64, Vec<usize>)> {
     let usual = lengths.get(lengths.len() * 95 / 100).copied().unwrap_or(1);
     let (low, high) = range(y);
     let moves = MOVES * deviation(simulated);
-    let found: Vec<(f64, Vec<usize>)> = all
+    let found: Vec<&Stretch> = all
         .iter()
         .filter(|s| s.to - s.from >= STILL.max(LONGER * usual))
         // at its limits a reading is cut off, not stuck
@@ -126,10 +126,28 @@ fn still(y: &[f64], simulated: &[f64]) -> Vec<(f64, Vec<usize>)> {
             let (a, b) = range(&simulated[s.from..s.to]);
             b - a > moves
         })
-        .map(|s| (s.value, (s.from..s.to).collect()))
         .collect();
+    if !jump_on(y, simulated, &found, moves) {
+        return vec![];
+    }
+    let rows = |s: &Stretch| (s.value, (s.from..s.to).collect());
+    let found: Vec<(f64, Vec<usize>)> = found.into_iter().map(rows).collect();
     let count: usize = found.iter().map(|(_, rows)| rows.len()).sum();
     if count as f64 > NATURE * y.len() as f64 { vec![] } else { found }
+}
+
+/// Whether readings go on where the machine has gone meanwhile: a sensor that stuck jumps there, a
+/// machine that stood, by friction that the model lacks, goes on from where it is. The coefficient of
+/// what the simulation moved in what the reading jumped, by least squares: 1 for a sensor, 0 for a
+/// machine; where it moved by less than `least`, that does not tell.
+fn jump_on(y: &[f64], simulated: &[f64], all: &[&Stretch], least: f64) -> bool {
+    let (mut both, mut own) = (0.0, 0.0);
+    for s in all.iter().filter(|s| y.get(s.to).is_some_and(|next| next.is_finite())) {
+        let moved = simulated[s.to] - simulated[s.from];
+        both += moved * (y[s.to] - s.value);
+        own += moved * moved;
+    }
+    own < least * least || both > 0.5 * own
 }
 
 /// Strikes out gross errors: readings that lie farther from all others than those from each
@@ -263,6 +281,10 @@ mod tests {
         let held = y[400];
         y[400..430].fill(held);
         assert_eq!(still(&y, &clean), [(held, (400..430).collect::<Vec<_>>())]);
+        // a machine that was held goes on from where it stood
+        let mut stood = clean.clone();
+        (400..1000).for_each(|k| stood[k] = clean[if k < 430 { 400 } else { k - 30 }]);
+        assert!(still(&stood, &clean).is_empty());
         // a machine at rest stands still as well
         assert!(still(&y, &vec![2.0; 1000]).is_empty());
     }

@@ -5,6 +5,7 @@
 
 mod cause;
 mod column;
+mod inside;
 mod notes;
 mod plan;
 mod rest;

@@ -1,5 +1,6 @@
 //! What is worth knowing beside the causes, one paragraph each.
 
+use super::inside::inside;
 use crate::diagnose::{AtLines, ClosedLoop, Distortion, Finding, Note, Regime};
 use crate::digits::{number, percent, rough, spaced, with_unit};
 
@@ -74,6 +75,7 @@ pub fn note(note: &Note) -> String {
              two others."
                 .into()
         }
+        Note::Inside { disturbances } => inside(disturbances),
         Note::MostCauses => "The search stopped at the largest number of causes allowed.".into(),
         Note::AllParametersDoubted { prior } => format!(
             "A parameter is named as wrong, so the standard errors allow for the others to be wrong too \

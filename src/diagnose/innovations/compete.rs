@@ -1,0 +1,82 @@
+//! How probable an answer is with noise at the sensors alone, and with noise inside the plant.
+
+use crate::likelihood::{Fitted, LikelihoodError, NoiseModel, Predictor, Scope};
+
+use crate::library::Allowed;
+use crate::problem::{Grain, Model, Problem};
+use crate::system::System;
+
+/// The predictor of the model that is diagnosed, on the samples of a problem.
+pub(super) fn predictor(
+    problem: &Problem<'_>,
+    start: &Model,
+    allowed: &Allowed,
+) -> Result<Predictor, LikelihoodError> {
+    let plan = problem.system.plan(problem.base.sampling_time)?;
+    let outputs = problem.y.len();
+    let mut measured = vec![f64::NAN; problem.len() * outputs];
+    for o in 0..outputs {
+        for k in (0..problem.len()).filter(|&k| problem.known[o][k]) {
+            measured[k * outputs + o] = problem.y[o][k];
+        }
+    }
+    let predictor = Predictor::joined(problem.system, plan, problem.drive.clone(), measured)?;
+    let scope = Scope {
+        only: allowed.only.clone(),
+        without: allowed.without.clone(),
+        fixed: allowed.fixed.clone(),
+    };
+    Ok(predictor.within(scope).starting(start.starts.clone()))
+}
+
+/// The same of an extended system, from the same states.
+pub(super) fn extended(of: &Predictor, by: &System, step: f64) -> Option<Predictor> {
+    of.extended_by(by, by.plan(step).ok()?)
+}
+
+/// An answer under both noise models; absent where it cannot be run under one.
+pub(super) struct Rivals {
+    /// The error of a free run is autoregressive.
+    pub outside: Option<Fitted>,
+    /// Noise inside the plant too.
+    pub inside: Option<Fitted>,
+}
+
+impl Rivals {
+    /// Both fits.
+    pub fn of(predictor: &Predictor) -> Self {
+        let (outside, inside) =
+            rayon::join(|| predictor.fit_free_run().ok(), || predictor.fit_noise().ok());
+        Self { outside, inside }
+    }
+
+    /// Whether noise inside the plant is clearly more probable, or cannot be asked for beside this
+    /// answer.
+    pub fn call_for_more(&self, clearly: f64) -> bool {
+        let Some(inside) = &self.inside else { return true };
+        let outside = self.outside.as_ref().map_or(f64::NEG_INFINITY, Fitted::criterion);
+        has_process(inside) && inside.criterion() - outside > clearly
+    }
+
+    /// The better criterion.
+    pub fn best(&self) -> f64 {
+        let both = [&self.outside, &self.inside].into_iter().flatten().map(Fitted::criterion);
+        both.fold(f64::NEG_INFINITY, f64::max)
+    }
+}
+
+/// Whether the predictor's noise is inside the plant or wanders: without any it is a free run.
+fn has_process(of: &Fitted) -> bool {
+    matches!(&of.noise, NoiseModel::Predictor(noise) if noise.has_process())
+}
+
+/// Step of a problem's fine grid in s.
+pub(super) fn step(problem: &Problem<'_>) -> f64 {
+    problem.base.sampling_time
+}
+
+/// The free run of a model over all samples, root mean square in units of the outputs' scales.
+pub(super) fn left(problem: &Problem<'_>, model: &Model) -> Option<f64> {
+    let y = problem.simulate(model, Grain::Fine)?;
+    Some(problem.mean_square(&y, crate::problem::Part::All).sqrt())
+}

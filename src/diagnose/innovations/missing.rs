@@ -1,0 +1,40 @@
+//! What has to be added at each channel for the model that was handed in to follow its records.
+
+use super::compete::predictor;
+use crate::cause::{ExplainedBy, MissingForce};
+use crate::finished::Finished;
+use crate::library::Allowed;
+use crate::note::Note;
+use crate::prepared::Prepared;
+use crate::searched::Searched;
+
+/// Coordinates that are told of each channel.
+const TOLD: usize = 4;
+
+/// What a search says, with the missing force and what disturbs the plant.
+pub(crate) fn completed(prepared: &Prepared<'_>, chosen: &Finished, of: Searched) -> Searched {
+    let mut of = Searched { missing: missing(prepared), ..of };
+    if let Some(disturbances) = chosen.inside.clone().filter(|all| !all.is_empty()) {
+        of.notes.push(Note::Inside { disturbances });
+    }
+    of
+}
+
+/// The missing force of every channel where one is seen; none where the records do not tell.
+fn missing(prepared: &Prepared<'_>) -> Vec<MissingForce> {
+    let found = predictor(&prepared.problem, &prepared.start, &Allowed::default());
+    let found = found.and_then(|predictor| predictor.missing()).unwrap_or_default();
+    let seen = found.into_iter().filter(|force| force.is_seen());
+    seen.map(|force| MissingForce {
+        channel: force.channel,
+        unit: force.unit,
+        rms: force.rms,
+        explained_by: force
+            .explained_by
+            .into_iter()
+            .take(TOLD)
+            .map(|by| ExplainedBy { coordinate: by.coordinate, share: by.share })
+            .collect(),
+    })
+    .collect()
+}

@@ -1,0 +1,20 @@
+//! Noise inside the plant: whether records call for it, and what is wrong where they do.
+//!
+//! ```text
+//! answer <- the search by free runs
+//! what it leaves is white                     keep it: all noise sits at the sensors
+//! free run with autoregressive noise as likely as a predictor with noise inside: keep it
+//! causes <- by the innovations of the predictor (`likelihood::Predictor::explain`)
+//! they are more probable than the answer under either noise: they replace it
+//! ```
+//!
+//! Everything is compared by log L - (numbers) / 2 ln(samples) - ln(choices) on the same samples
+//! (Schwarz, Annals of Statistics 6, 1978; Ljung, "System Identification", 2nd ed., 1999, section 16.4).
+
+mod compete;
+mod missing;
+mod reconsidered;
+mod told;
+
+pub(crate) use missing::completed;
+pub(crate) use reconsidered::{finish, search};

@@ -1,0 +1,117 @@
+//! An answer of free runs, reconsidered where the records call for noise inside the plant.
+
+use crate::likelihood::Predictor;
+
+use super::compete::{Rivals, extended, left, predictor, step};
+use super::told::{carried_over, finished};
+use crate::error::DiagnoseError;
+use crate::finished::Finished;
+use crate::library::Allowed;
+use crate::prepared::Prepared;
+use crate::problem::Part;
+use crate::refit::MANY;
+use crate::statistics::whiteness;
+use crate::watch::Watch;
+
+/// Score of the Ljung-Box test up to which what is left counts as white.
+const WHITE: f64 = 3.0;
+/// By how much noise inside the plant must be more probable for a search of its own: odds of 150 to
+/// 1 (Kass and Raftery, JASA 90, 1995: very strong).
+const CLEARLY: f64 = 5.0;
+/// How much larger than without them causes may leave a free run.
+const WORSE: f64 = 1.05;
+
+/// An answer and what it was weighed against.
+type Answer = (Finished, Option<Finished>);
+
+/// Searches by free runs, and by innovations where the records call for it; the chosen track comes
+/// first.
+pub(crate) fn search(
+    prepared: &mut Prepared<'_>,
+    allowed: &Allowed,
+    most: usize,
+    watch: &dyn Watch,
+) -> Result<Answer, DiagnoseError> {
+    let answer = prepared.search(allowed, most, watch)?;
+    Ok(reconsidered(prepared, allowed, most, answer, watch))
+}
+
+/// What a search over some samples found, on all of these records.
+pub(crate) fn finish(
+    prepared: &mut Prepared<'_>,
+    allowed: &Allowed,
+    found: Finished,
+) -> Result<Finished, DiagnoseError> {
+    match found.is_by_innovations() {
+        true => carried_over(prepared, found),
+        false => prepared.finish(allowed, found),
+    }
+}
+
+/// The answer, or that of the innovations where it is more probable.
+fn reconsidered(
+    prepared: &Prepared<'_>,
+    allowed: &Allowed,
+    most: usize,
+    answer: Answer,
+    watch: &dyn Watch,
+) -> Answer {
+    let many = prepared.problem.drive.segments.len() >= MANY;
+    if most == 0 || many || watch.stopped() || is_white(prepared, &answer.0) {
+        return answer;
+    }
+    watch.tell(0.9, "asking for noise inside the plant");
+    match by_innovations(prepared, allowed, most, &answer.0, watch) {
+        Some(better) => (better, Some(answer.0)),
+        None => answer,
+    }
+}
+
+/// Whether a free run of the answer leaves white noise of every output.
+fn is_white(prepared: &Prepared<'_>, answer: &Finished) -> bool {
+    let problem = &prepared.problem;
+    (0..problem.y.len()).all(|o| {
+        let off: Vec<f64> = problem.y[o].iter().zip(&answer.y[o]).map(|(a, b)| a - b).collect();
+        whiteness(&problem.counted(o, &off, Part::All)) < WHITE
+    })
+}
+
+/// What the innovations find, where that is more probable than an answer.
+fn by_innovations(
+    prepared: &Prepared<'_>,
+    allowed: &Allowed,
+    most: usize,
+    answer: &Finished,
+    watch: &dyn Watch,
+) -> Option<Finished> {
+    let problem = &prepared.problem;
+    let base = predictor(problem, &answer.fitted.model, allowed).ok()?;
+    let system = prepared.teller().extend(&answer.fitted.model).ok()?;
+    let known = extended(&base, &system, step(problem))?;
+    let rivals = Rivals::of(&known);
+    if !rivals.call_for_more(CLEARLY) || watch.stopped() {
+        return None;
+    }
+    watch.tell(0.92, "searching by innovations");
+    let held: Vec<_> = problem.choose.clone();
+    let found = base.explain(most, &held, &|| watch.stopped()).ok()?;
+    let of_answer = rivals.best() - taken(&base, answer);
+    let none = found.causes.is_empty() && answer.causes() + answer.count_moved() == 0;
+    if !none && found.criterion() <= of_answer {
+        return None;
+    }
+    let told = finished(prepared, allowed, answer, (&base, &found))?;
+    // a likelihood is exact, a model is not: what it predicts must not get worse
+    let before = left(problem, &prepared.start)?;
+    let after = left(problem, &told.fitted.model)?;
+    (after <= WORSE * before).then_some(told)
+}
+
+/// What the causes of an answer take: their numbers, and what they were chosen from.
+fn taken(of: &Predictor, answer: &Finished) -> f64 {
+    let model = &answer.fitted.model;
+    let numbers: usize = model.added.iter().map(|added| added.cause.unknowns()).sum();
+    let numbers = (numbers + answer.moved.len()) as f64;
+    let chosen = (model.added.len() - model.known() + answer.count_moved()) as f64;
+    0.5 * numbers * (of.samples() as f64).ln() + chosen * (of.places_count() as f64).ln()
+}

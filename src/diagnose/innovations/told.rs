@@ -1,0 +1,211 @@
+//! What the innovations found, as the end of a search: causes of the library with their numbers, errors
+//! and probabilities, and the free run of the model that has them.
+
+use std::sync::Arc;
+
+use crate::likelihood::{Component, Explanation, NamedCause, Noise, Predictor};
+use nalgebra::{DMatrix, DVector};
+
+use crate::candidate::{Candidate, Wire};
+use crate::criteria::LOOK_ALIKE;
+use crate::effect::Role;
+use crate::error::DiagnoseError;
+use crate::finding::Track;
+use crate::finished::Finished;
+use crate::found::{Belief, Found, Posterior, Slot};
+use crate::library::{Allowed, library};
+use crate::note::{Disturbance, Disturbs};
+use crate::nuisance::{Key, Nuisance};
+use crate::precision::Precision;
+use crate::prepared::Prepared;
+use crate::problem::{Added, Grain, Model, Part};
+use crate::refit::Fitted;
+use crate::sets::SET;
+use crate::system::Placed;
+
+/// A law as a cause of the library, and the standard errors of its knobs.
+struct Law {
+    added: Added,
+    errors: Vec<Option<f64>>,
+}
+
+/// An explanation as a finished track; `None` where a law of it is not in the library, or the model
+/// cannot be run freely.
+pub(super) fn finished(
+    prepared: &Prepared<'_>,
+    allowed: &Allowed,
+    answer: &Finished,
+    (of, found): (&Predictor, &Explanation),
+) -> Option<Finished> {
+    let problem = &prepared.problem;
+    let known = library(problem, &prepared.nominal, &prepared.start, vec![], allowed);
+    let theta = &prepared.start.theta;
+    let (mut laws, mut slots) = (vec![], vec![]);
+    for cause in &found.causes {
+        let own = laws_of(&known, cause, theta)?;
+        let alike = alike(&known, cause);
+        slots.extend(own.iter().map(|law| slot(&law.added.cause, cause, &alike)));
+        laws.extend(own);
+    }
+    let withdrawn = found.withdrawn.iter().filter_map(|cause| laws_of(&known, cause, theta));
+    let withdrawn = withdrawn.flatten().map(|law| law.added).collect();
+    let mut keys = vec![];
+    let mut variances = vec![];
+    for (a, Law { added, errors }) in laws.iter().enumerate() {
+        let free = added.cause.linear.iter().chain(&added.cause.refine);
+        for (&i, error) in free.filter_map(|i| Some((i, errors.get(*i).copied().flatten()?))) {
+            keys.push(Key::Knob(a, i));
+            variances.push(error * error);
+        }
+    }
+    let precision = Precision::of(keys.clone(), DMatrix::from_diagonal(&DVector::from(variances)));
+    let added: Vec<Added> = laws.into_iter().map(|law| law.added).collect();
+    let started = |starts| Model { theta: theta.clone(), starts, added: added.clone() };
+    let models = [started(found.starts.clone()), started(prepared.start.starts.clone())];
+    let run = |model: Model| problem.simulate(&model, Grain::Fine).map(|y| (model, y));
+    // a free run does not forget the noise that a filter has at its start
+    let runs = models.into_iter().filter_map(run);
+    let off = |y: &[Vec<f64>]| problem.mean_square(y, Part::All);
+    let (model, y) = runs.min_by(|a, b| off(&a.1).total_cmp(&off(&b.1)))?;
+    let residuals = problem.residual(&y, Part::All);
+    Some(Finished {
+        track: Track::ParametersTrusted,
+        found: Found {
+            model: model.clone(),
+            slots,
+            first: None,
+            last: None,
+            dependence: answer.found.dependence,
+            spikes: problem.spikes(),
+            full: false,
+            given_up: false,
+            posterior: Some(Posterior { nothing: found.nothing, withdrawn }),
+        },
+        fitted: Fitted { model, keys, columns: vec![], residuals },
+        nuisance: Nuisance::new(problem, &prepared.nominal),
+        precision: Some(precision),
+        moved: vec![],
+        moved_together: false,
+        y,
+        // what innovations leave to no place is noise, also where a loop feeds it back
+        dependence: 0.0,
+        inside: Some(disturbances(of, &found.noise)),
+    })
+}
+
+/// What a noise is made of, beside the white noise of sensors.
+fn disturbances(of: &Predictor, noise: &Noise) -> Vec<Disturbance> {
+    let (forces, outputs) = (of.forces(), of.outputs());
+    let one = |component: Component| {
+        let (kind, (place, unit)) = match component {
+            Component::Measurement(_) => return None,
+            Component::White(c) => (Disturbs::White, forces.get(c)?.clone()),
+            Component::Slow(c) => (Disturbs::Slow, forces.get(c)?.clone()),
+            Component::Wander(o) => (Disturbs::Wander, outputs.get(o)?.clone()),
+        };
+        Some(Disturbance { place, kind, size: noise.variance(component).sqrt(), unit })
+    };
+    noise.components().into_iter().filter_map(one).collect()
+}
+
+/// A finding of innovations on other samples of the same records: its numbers as they are.
+pub(super) fn carried_over(
+    prepared: &Prepared<'_>,
+    mut of: Finished,
+) -> Result<Finished, DiagnoseError> {
+    let problem = &prepared.problem;
+    of.fitted.model.starts.clone_from(&prepared.start.starts);
+    let y = problem.simulate(&of.fitted.model, Grain::Fine);
+    of.y = y.ok_or_else(|| prepared.diverges())?;
+    of.fitted.residuals = problem.residual(&of.y, Part::All);
+    of.found.spikes = problem.spikes();
+    of.found.model = of.fitted.model.clone();
+    of.nuisance = Nuisance::new(problem, &prepared.nominal);
+    Ok(of)
+}
+
+/// The laws of a cause, each as one of the library.
+fn laws_of(known: &[Arc<Candidate>], cause: &NamedCause, theta: &[f64]) -> Option<Vec<Law>> {
+    if let Some((value, error)) = cause.parameter {
+        let is_own = |c: &&Arc<Candidate>| matches!(c.wire, Wire::Parameter(_));
+        let own = known.iter().filter(is_own).find(|c| c.into == cause.into)?;
+        let Wire::Parameter(p) = own.wire else { return None };
+        let added = Added { cause: own.clone(), knobs: vec![value - theta[p]] };
+        return Some(vec![Law { added, errors: vec![error] }]);
+    }
+    let none = vec![];
+    let one = |(i, placed): (usize, &Placed)| {
+        let errors = cause.errors.get(i).unwrap_or(&none);
+        let (own, factor) = known.iter().find_map(|c| Some((c, stands_for(c, placed)?)))?;
+        let mut knobs = placed.effect.card().values();
+        let mut errors = errors.clone();
+        for &i in &own.linear {
+            knobs[i] *= factor;
+            if let Some(Some(error)) = errors.get_mut(i) {
+                *error *= factor.abs();
+            }
+        }
+        Some(Law { added: Added { cause: own.clone(), knobs }, errors })
+    };
+    cause.laws.iter().enumerate().map(one).collect()
+}
+
+/// Whether a cause of the library is a law of a model file, or its twin in a channel that pushes the
+/// same way; the factor of its coefficients.
+fn stands_for(cause: &Candidate, placed: &Placed) -> Option<f64> {
+    let values = placed.effect.card().values();
+    let start = cause.starts.first()?;
+    let same = cause.card.knobs.iter().zip(&values).zip(start).all(|((knob, value), start)| {
+        let choice = knob.role != Role::Choice || (value - start).abs() < 0.5;
+        choice && value.is_finite() == start.is_finite()
+    });
+    if cause.effect != placed.effect.typetag_name() || !same || values.len() != start.len() {
+        return None;
+    }
+    if cause.into == placed.into && cause.of == placed.of {
+        return Some(1.0);
+    }
+    // on its own path an input is both, and its channel stands for it
+    let twin = |(into, of, _): &&(String, Option<String>, f64)| {
+        *into == placed.into && (*of == placed.of || cause.of == placed.of)
+    };
+    cause.twins.iter().find(twin).map(|(_, _, factor)| *factor)
+}
+
+/// Other causes that may be at work instead, with their probabilities.
+fn alike(known: &[Arc<Candidate>], cause: &NamedCause) -> Vec<(Arc<Candidate>, f64)> {
+    let mut found: Vec<(Arc<Candidate>, f64)> = vec![];
+    let own = |c: &Candidate| {
+        cause.laws.iter().any(|law| stands_for(c, law).is_some())
+            || (cause.parameter.is_some() && c.into == cause.into)
+    };
+    for set in cause.others.iter().filter(|set| set.probability > LOOK_ALIKE) {
+        let moved = |c: &&Arc<Candidate>| {
+            let is_parameter = matches!(c.wire, Wire::Parameter(_));
+            is_parameter && set.parameters.iter().any(|(name, _)| *name == c.into)
+        };
+        let law = |c: &&Arc<Candidate>| {
+            set.laws.first().is_some_and(|placed| stands_for(c, placed).is_some())
+        };
+        let other = known.iter().find(moved).or_else(|| known.iter().find(law));
+        let Some(other) = other.filter(|c| !own(c)) else { continue };
+        match found.iter_mut().find(|(c, _)| c.same_cause(other)) {
+            Some((_, chance)) => *chance += set.probability,
+            None => found.push((other.clone(), set.probability)),
+        }
+    }
+    found.sort_by(|a, b| b.1.total_cmp(&a.1));
+    found.truncate(SET - 1);
+    found
+}
+
+fn slot(own: &Arc<Candidate>, cause: &NamedCause, alike: &[(Arc<Candidate>, f64)]) -> Slot {
+    let others = alike.iter().filter(|(c, _)| !c.same_cause(own));
+    let (mut set, mut members) = (vec![(own.clone(), 1.0)], vec![cause.probability]);
+    for (other, chance) in others {
+        set.push((other.clone(), 1.0));
+        members.push(*chance);
+    }
+    let (law, place) = (cause.probability, cause.place_probability);
+    Slot { set, others: vec![], score: 0.0, belief: Some(Belief { law, place, members }) }
+}

@@ -1,0 +1,298 @@
+//! All causes of a record: one place after the other, each with its laws.
+//!
+//! ```text
+//! repeat  the most probable place and its laws, given the causes before (`places.rs`)
+//!         all causes fitted together, the noise anew
+//! until nothing more is probable
+//! causes that are not needed beside the others are left out
+//! causes that held samples speak against are withdrawn; the rest fitted to all samples
+//! ```
+//!
+//! Sources: Miller, "Subset Selection in Regression", 2nd ed., 2002; Dawid, JRSS A 147, 1984.
+
+use std::ops::Range;
+
+use super::error::LikelihoodError;
+use super::explanation::{Explanation, NamedCause};
+use super::hypothesis::{Hypothesis, Part, names};
+use super::noise::Layout;
+use super::places::Survey;
+use super::predictor::{Predictor, starts};
+use super::ranked::{FittedLaws, MISSING};
+use super::replay::Pass;
+use super::tangent::Site;
+use super::weigh::{Weighed, plainest};
+
+/// Log density by which held samples must speak for a cause.
+const REFUTED: f64 = 0.0;
+
+/// A cause under way; its parts stand in the hypothesis in the order of causes.
+#[derive(Debug, Clone)]
+struct Found {
+    place: (Site, Option<usize>),
+    parts: Vec<Part>,
+    choice: f64,
+    log_odds: f64,
+    law: f64,
+    at_place: f64,
+    others: Vec<FittedLaws>,
+    chosen_again: bool,
+}
+
+impl Predictor {
+    /// What explains the records, at most `most` causes; `held` are samples that nothing is fitted to
+    /// until causes are chosen, and that may refute them. `stop` is asked between causes.
+    ///
+    /// # Errors
+    ///
+    /// As [`Predictor::fit_noise`].
+    pub fn explain(
+        &self,
+        most: usize,
+        held: &[Range<usize>],
+        stop: &dyn Fn() -> bool,
+    ) -> Result<Explanation, LikelihoodError> {
+        let mut fit = self.blinded(held);
+        let first = fit.choose(&fit.model)?;
+        fit.settle(&first.run.path, &first.noise);
+        let first = fit.renewed(&fit.model, &first.noise, 2)?;
+        let null = Hypothesis {
+            parts: vec![],
+            theta: fit.model.theta.clone(),
+            noise: first.noise,
+            log_likelihood: first.log_likelihood,
+        };
+        let mut nothing = 1.0;
+        let (mut found, mut now) = fit.one_by_one(&null, most, stop, &mut nothing)?;
+        fit.pruned_causes(&mut found, &mut now, &null);
+        let all = Self { start: fit.start.clone(), ..self.clone() };
+        let mut withdrawn = vec![];
+        while let Some(worst) = all.refuted(&fit, &found, &now, &null, held) {
+            withdrawn.push(found.remove(worst.0));
+            now = worst.1;
+        }
+        all.finished((found, withdrawn), now, nothing)
+    }
+
+    /// Causes one after the other.
+    fn one_by_one(
+        &self,
+        null: &Hypothesis,
+        most: usize,
+        stop: &dyn Fn() -> bool,
+        nothing: &mut f64,
+    ) -> Result<(Vec<Found>, Hypothesis), LikelihoodError> {
+        let (mut found, mut now): (Vec<Found>, Hypothesis) = (vec![], null.clone());
+        while found.len() < most && !stop() {
+            let survey = self.holding(&now)?.survey(&now.noise, None)?;
+            if found.is_empty() {
+                *nothing = 1.0 - survey.sets.iter().map(|set| set.probability).sum::<f64>();
+            }
+            let Some(best) = plainest(&survey.sets).filter(|set| set.log_odds > MISSING) else {
+                break;
+            };
+            let known = found.iter().position(|cause| cause.place == best.place);
+            let (mut kept, cause) = match known {
+                None => (found.clone(), self.of(&survey, best)),
+                Some(at) => {
+                    let mut kept = found.clone();
+                    let old = kept.remove(at);
+                    if old.chosen_again || matches!(old.place.0, Site::Parameter(_)) {
+                        break;
+                    }
+                    let parts = joined(&kept);
+                    let rest = Hypothesis { parts, ..now.clone() };
+                    let again = self.holding(&rest)?.survey(&now.noise, Some(old.place))?;
+                    let Some(first) = plainest(&again.sets) else { break };
+                    let cause = self.of(&again, first);
+                    // the place was chosen among all of them
+                    (kept, Found { chosen_again: true, choice: old.choice, ..cause })
+                }
+            };
+            let start = best.hypothesis.clone();
+            kept.push(cause);
+            let fitted = self.fit(joined(&kept), &start.theta, &start.noise);
+            let Some(joint) = fitted.and_then(|h| self.refit(h)) else { break };
+            if !(self.merit(&joint, &kept) > self.merit(&now, &found)) {
+                break;
+            }
+            dealt(&mut kept, &joint);
+            (found, now) = (kept, joint);
+        }
+        Ok((found, now))
+    }
+
+    /// A set of a survey as a cause.
+    fn of(&self, survey: &Survey, set: &Weighed) -> Found {
+        let at = |other: &&Weighed| other.place == set.place;
+        let named = |other: &&Weighed| other.hypothesis.names() == names(&set.hypothesis.parts);
+        let sum = |sets: Vec<&Weighed>| sets.iter().map(|set| set.probability).sum::<f64>();
+        let same: Vec<&Weighed> = survey.sets.iter().filter(at).filter(named).collect();
+        let others = survey.sets.iter().filter(|other| !(at(other) && named(other)));
+        Found {
+            place: set.place,
+            parts: set.hypothesis.parts.clone(),
+            choice: set.choice,
+            log_odds: set.log_odds,
+            law: sum(same).min(1.0),
+            at_place: sum(survey.sets.iter().filter(at).collect()).min(1.0),
+            others: others.map(|other| self.told(other.clone())).collect(),
+            chosen_again: false,
+        }
+    }
+
+    /// The predictor of a model that has a hypothesis in it.
+    fn holding(&self, of: &Hypothesis) -> Result<Self, LikelihoodError> {
+        let mut here = self.clone();
+        here.model = self.extended(&of.parts, &of.theta)?;
+        here.system.effects.extend(self.placed(&of.parts));
+        Ok(here)
+    }
+
+    /// Criterion of a hypothesis, less what its causes were chosen from.
+    fn merit(&self, of: &Hypothesis, found: &[Found]) -> f64 {
+        let choice: f64 = found.iter().map(|cause| cause.choice).sum();
+        of.criterion(self.observed()) - choice
+    }
+
+    /// The hypothesis without one of its causes, fitted anew.
+    fn less(
+        &self,
+        found: &[Found],
+        now: &Hypothesis,
+        null: &Hypothesis,
+        at: usize,
+    ) -> Option<Hypothesis> {
+        if found.len() == 1 {
+            return Some(null.clone());
+        }
+        let mut rest = found.to_vec();
+        let gone = rest.remove(at);
+        let mut theta = now.theta.clone();
+        if let Site::Parameter(p) = gone.place.0 {
+            theta[p] = null.theta[p];
+        }
+        self.refit(self.fit(joined(&rest), &theta, &now.noise)?)
+    }
+
+    /// Leaves out causes that are not needed beside the others, the least needed first.
+    fn pruned_causes(&self, found: &mut Vec<Found>, now: &mut Hypothesis, null: &Hypothesis) {
+        loop {
+            let rests: Vec<Option<Hypothesis>> =
+                (0..found.len()).map(|i| self.less(found, now, null, i)).collect();
+            let samples = self.observed();
+            for (cause, rest) in found.iter_mut().zip(&rests) {
+                if let Some(rest) = rest {
+                    let gain = now.criterion(samples) - rest.criterion(samples);
+                    cause.log_odds = gain - cause.choice;
+                }
+            }
+            let least = (0..found.len())
+                .min_by(|&a, &b| found[a].log_odds.total_cmp(&found[b].log_odds))
+                .filter(|&i| found[i].log_odds < MISSING);
+            let Some((i, rest)) = least.and_then(|i| Some((i, rests[i].clone()?))) else { return };
+            found.remove(i);
+            dealt(found, &rest);
+            *now = rest;
+        }
+    }
+
+    /// The cause that held samples speak against most, and what is left without it; `fit` is the
+    /// predictor that does not see them.
+    fn refuted(
+        &self,
+        fit: &Self,
+        found: &[Found],
+        now: &Hypothesis,
+        null: &Hypothesis,
+        held: &[Range<usize>],
+    ) -> Option<(usize, Hypothesis)> {
+        if held.iter().all(|range| range.is_empty()) {
+            return None;
+        }
+        let with = self.density(now, held);
+        let one = |i: usize| {
+            let rest = fit.less(found, now, null, i)?;
+            let bare = self.density(&rest, held)?;
+            // what cannot even be run with it is refuted
+            Some((with.map_or(f64::NEG_INFINITY, |with| with - bare), i, rest))
+        };
+        let worst = (0..found.len()).filter_map(one).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        (worst.0 <= REFUTED).then_some((worst.1, worst.2))
+    }
+
+    /// The causes that are left, fitted to all samples.
+    fn finished(
+        &self,
+        (mut found, withdrawn): (Vec<Found>, Vec<Found>),
+        now: Hypothesis,
+        nothing: f64,
+    ) -> Result<Explanation, LikelihoodError> {
+        let fitted = self.fit(joined(&found), &now.theta, &now.noise);
+        let now = fitted.and_then(|h| self.refit(h)).unwrap_or(now);
+        dealt(&mut found, &now);
+        let (now, run) = self.evaluated(now)?;
+        let errors = self.errors(&now, &run);
+        let pass = Pass::of(&run.path, &now.noise, true);
+        let smoothed = pass.smoothed(&run.path, &now.noise);
+        let nx = self.start.p0.len();
+        let begun = starts(&run.path, &smoothed.mean, &Layout::of(run.path.n, &now.noise));
+        let mut errors = errors.into_iter();
+        let choice = found.iter().map(|cause| cause.choice).sum();
+        let causes = found.into_iter().map(|cause| {
+            let own = errors.by_ref().take(cause.parts.len()).collect();
+            self.said(cause, &now.theta, own)
+        });
+        let causes: Vec<NamedCause> = causes.collect();
+        let said = |cause: Found| self.said(cause, &now.theta, vec![]);
+        Ok(Explanation {
+            causes,
+            withdrawn: withdrawn.into_iter().map(said).collect(),
+            nothing,
+            numbers: now.numbers() + now.noise.count(),
+            log_likelihood: now.log_likelihood,
+            choice,
+            samples: self.observed() as usize,
+            starts: begun.into_iter().map(|x| x[..nx].to_vec()).collect(),
+            noise: now.noise,
+        })
+    }
+
+    fn said(&self, cause: Found, theta: &[f64], mut errors: Vec<Vec<Option<f64>>>) -> NamedCause {
+        let parameter = match cause.place.0 {
+            Site::Parameter(p) => {
+                let error = errors.first().and_then(|own| own.first().copied().flatten());
+                Some((theta[p], error))
+            }
+            _ => None,
+        };
+        if parameter.is_some() {
+            errors.clear();
+        }
+        NamedCause {
+            into: self.name(cause.place.0),
+            of: cause.place.1.map(|e| self.model.plan.sources.entries[e].0.name.clone()),
+            laws: self.placed(&cause.parts),
+            errors,
+            parameter,
+            log_odds: cause.log_odds,
+            probability: cause.law,
+            place_probability: cause.at_place,
+            others: cause.others,
+        }
+    }
+}
+
+/// All parts of causes, in their order.
+fn joined(found: &[Found]) -> Vec<Part> {
+    found.iter().flat_map(|cause| cause.parts.iter().cloned()).collect()
+}
+
+/// Deals the fitted parts out to their causes.
+fn dealt(found: &mut [Found], of: &Hypothesis) {
+    let mut parts = of.parts.iter().cloned();
+    for cause in found {
+        let count = cause.parts.len();
+        cause.parts = parts.by_ref().take(count).collect();
+    }
+}

@@ -1,0 +1,59 @@
+//! What explains a record: causes with their probabilities, and the noise that is left.
+
+use super::noise::Noise;
+use super::ranked::FittedLaws;
+use crate::system::Placed;
+
+/// One place at which something is missing, and its laws.
+#[derive(Debug, Clone)]
+pub struct NamedCause {
+    /// Channel, input, output or parameter.
+    pub into: String,
+    /// Coordinate, absent where it depends on nothing.
+    pub of: Option<String>,
+    /// Laws of the place, an offset of its channel among them; empty for a parameter.
+    pub laws: Vec<Placed>,
+    /// Standard errors of the knobs of each law; `None` where they were not fitted.
+    pub errors: Vec<Vec<Option<f64>>>,
+    /// Value of the parameter, and its standard error.
+    pub parameter: Option<(f64, Option<f64>)>,
+    /// Log odds against all without it.
+    pub log_odds: f64,
+    /// Probability of these laws at this place.
+    pub probability: f64,
+    /// Probability of the place, whatever its laws.
+    pub place_probability: f64,
+    /// Other sets that were fitted in its stead, the most probable first.
+    pub others: Vec<FittedLaws>,
+}
+
+/// Everything that explains records.
+#[derive(Debug, Clone)]
+pub struct Explanation {
+    /// Causes in order of discovery.
+    pub causes: Vec<NamedCause>,
+    /// Causes that samples which were not fitted speak against.
+    pub withdrawn: Vec<NamedCause>,
+    /// Probability that nothing is missing.
+    pub nothing: f64,
+    /// The noise that is left.
+    pub noise: Noise,
+    /// Exact log likelihood of all innovations.
+    pub log_likelihood: f64,
+    /// Numbers that were fitted: of laws, parameters and noise.
+    pub numbers: usize,
+    /// ln of what all causes were chosen from.
+    pub choice: f64,
+    /// Measured outputs, each sample of each counted.
+    pub samples: usize,
+    /// Most likely states at the first sample of every segment.
+    pub starts: Vec<Vec<f64>>,
+}
+
+impl Explanation {
+    /// log L - (numbers) / 2 ln(samples), less what the causes were chosen from.
+    pub fn criterion(&self) -> f64 {
+        let each = 0.5 * (self.samples as f64).ln();
+        self.log_likelihood - each * self.numbers as f64 - self.choice
+    }
+}

@@ -1,0 +1,46 @@
+//! Noise inside the plant in words.
+
+use crate::diagnose::{Disturbance, Disturbs};
+use crate::digits::with_unit;
+
+/// What disturbs the plant beside its causes, and what that means for simulations.
+pub(super) fn inside(all: &[Disturbance]) -> String {
+    let said: Vec<String> = all.iter().map(one).collect();
+    format!(
+        "The plant itself is disturbed: {}. Causes were judged by what a predictor does not foresee, \
+         which such noise leaves white; a simulation drifts by it, whatever it is extended by.",
+        said.join("; ")
+    )
+}
+
+fn one(of: &Disturbance) -> String {
+    let size = with_unit(of.size, &of.unit);
+    let place = &of.place;
+    match of.kind {
+        Disturbs::White => format!("a random force of {size} on {place} that nothing explains"),
+        Disturbs::Slow => {
+            format!("a slow force on {place} that changes by {size} from sample to sample")
+        }
+        Disturbs::Wander => {
+            format!("the reading of {place} wanders by {size} from sample to sample")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_disturbance_has_its_size_and_place() {
+        let of = |kind, place: &str| Disturbance {
+            place: place.into(),
+            kind,
+            size: 2.7,
+            unit: "N".into(),
+        };
+        let said = inside(&[of(Disturbs::White, "carriage"), of(Disturbs::Wander, "encoder")]);
+        assert!(said.contains(&format!("force of {} on carriage", with_unit(2.7, "N"))), "{said}");
+        assert!(said.contains("reading of encoder wanders by"), "{said}");
+    }
+}
