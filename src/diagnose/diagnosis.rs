@@ -8,7 +8,7 @@ use super::error::DiagnoseError;
 use super::faults::{Fault, coarse};
 use super::finding::{Finding, RecordFacts, Verdict};
 use super::innovations;
-use super::library::{Allowed, Method};
+use super::library::Allowed;
 use super::mended::Mended;
 use super::note::Note;
 use super::overlap::refuse_overlap;
@@ -108,14 +108,6 @@ impl<'a> Diagnosis<'a> {
     #[must_use]
     pub fn init(mut self, init: Init) -> Self {
         self.init = init;
-        self
-    }
-
-    /// Searches by posterior probabilities instead of step by step.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn by_posterior(mut self, yes: bool) -> Self {
-        self.allowed.method = if yes { Method::Posterior } else { Method::Stepwise };
         self
     }
 
@@ -255,11 +247,13 @@ impl<'a> Diagnosis<'a> {
         };
         let mut whole = Prepared::new(self.system, used, share)?;
         let windows = windows(used);
+        let mut looked_at = None;
         let (chosen, other) = match &windows {
             None => innovations::search(&mut whole, &self.allowed, most, watch)?,
             Some(windows) => {
                 let mut part = Prepared::new(self.system, windows, share)?;
                 let (chosen, other) = innovations::search(&mut part, &self.allowed, most, watch)?;
+                looked_at = Some(part);
                 watch.tell(0.95, "fitting to all samples");
                 let chosen = innovations::finish(&mut whole, &self.allowed, chosen)?;
                 (chosen, other.map(|other| whole.finish(&self.allowed, other)).transpose()?)
@@ -270,7 +264,7 @@ impl<'a> Diagnosis<'a> {
         let (start, fixed) = (&whole.start, &self.allowed.fixed);
         let from = Source { start, test: &test, used, firsts: &firsts, fixed };
         let searched = whole.teller().tell(&chosen, other.as_ref(), &from)?;
-        Ok(innovations::completed(&whole, &chosen, searched))
+        Ok(innovations::completed(looked_at.as_ref().unwrap_or(&whole), &chosen, searched))
     }
 
     /// Says at which sample a baseline leaves the finite numbers, if it does.

@@ -43,6 +43,7 @@ mod library;
 mod limits;
 mod measure;
 mod mended;
+mod method;
 mod moved;
 mod naming;
 mod network_start;

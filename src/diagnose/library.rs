@@ -32,6 +32,8 @@ pub(crate) struct Allowed {
     pub fixed: Vec<String>,
     /// How they are searched for.
     pub method: Method,
+    /// Whether noise may be inside the plant.
+    pub noise_inside: bool,
 }
 
 impl Allowed {

@@ -122,7 +122,7 @@ fn cases() -> Vec<Case> {
             kind: Kind::Loop,
             drive: 0.1,
             noise: noise(&[1.0, 0.0], &[1e-4], &[]),
-            asked: true,
+            asked: false,
             effect: "coulomb_friction",
             into: "on_slide",
             of: "speed",
@@ -185,7 +185,7 @@ impl Case {
 
     fn finding(&self, size: f64, n: usize, seed: u64) -> Finding {
         let record = self.record(size, &self.noise, n, seed);
-        Diagnosis::of(&system(self.plant)).run(&[record], None, &()).unwrap()
+        Diagnosis::of(&system(self.plant)).noise_inside(true).run(&[record], None, &()).unwrap()
     }
 
     /// Whether the first cause is the effect at its place, and all that was said.

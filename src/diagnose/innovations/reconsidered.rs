@@ -57,7 +57,12 @@ fn reconsidered(
     watch: &dyn Watch,
 ) -> Answer {
     let many = prepared.problem.drive.segments.len() >= MANY;
-    if most == 0 || many || watch.stopped() || is_white(prepared, &answer.0) {
+    if !allowed.noise_inside
+        || most == 0
+        || many
+        || watch.stopped()
+        || is_white(prepared, &answer.0)
+    {
         return answer;
     }
     watch.tell(0.9, "asking for noise inside the plant");
