@@ -3,7 +3,8 @@
 //!
 //! g = 1: what the effect adds to the outputs is as large (RMS) as what all noise adds.
 
-#[allow(dead_code)]
+// one segment is a list of one range
+#[allow(dead_code, clippy::single_range_in_vec_init)]
 #[path = "../../src/likelihood/tests/plants.rs"]
 mod plants;
 
@@ -232,7 +233,8 @@ fn causes_are_explained_together_and_the_rest_is_noise() {
     let noise = Sizes { white: vec![0.3], measurement: vec![0.01], ..Sizes::default() };
     let record = simulate(&machine, &excitation(3000, 0.05, 1.5, 8), &noise, 9);
     let predictor = Predictor::new(&system(OSCILLATOR), &[record]).unwrap();
-    let found = predictor.explain(5, &[2200..3000], &|| false).unwrap();
+    let held = std::iter::once(2200..3000).collect::<Vec<_>>();
+    let found = predictor.explain(5, &held, &|| false).unwrap();
     let said = format!("{found:?}");
     assert_eq!((found.causes.len(), found.withdrawn.len()), (2, 0), "{said}");
     for (of, name, value) in [("rate", "coulomb_friction", -0.4), ("place", "cubic", -4.0)] {
