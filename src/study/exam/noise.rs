@@ -1,8 +1,9 @@
 //! What a sensor makes of a clean signal: noises of one mean square and many natures.
 //!
 //! Student's t as a normal over the root of a chi-square over its degrees of freedom; rounding
-//! errors as uniform of variance q^2/12 (Widrow, Kollar and Liu, IEEE Trans. Instrum. Meas. 45,
-//! 1996); a random walk of n steps of variance v has the mean square v n/2 along its record.
+//! errors as uniform of variance q^2/12 where the signal covers many steps (Widrow, Kollar and
+//! Liu, IEEE Trans. Instrum. Meas. 45, 1996); a random walk of n steps of variance v has the mean
+//! square v n/2 along its record.
 
 use super::Noise;
 use crate::StudyError;
@@ -93,7 +94,8 @@ mod tests {
             Noise::Quantised { share: 0.9 },
             Noise::RandomWalk { share: 0.5 },
         ];
-        let clean: Vec<f64> = (0..4000).map(|k| (0.01 * f64::from(k)).sin()).collect();
+        // a rounding error is uniform where the signal covers many steps
+        let clean: Vec<f64> = (0..4000).map(|k| 5.0 * (0.01 * f64::from(k)).sin()).collect();
         for kind in kinds {
             let mut square = 0.0;
             for seed in 0..40 {
