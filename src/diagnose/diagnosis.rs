@@ -7,7 +7,7 @@ use super::distortion::distortion;
 use super::error::DiagnoseError;
 use super::faults::{Fault, coarse};
 use super::finding::{Finding, RecordFacts, Verdict};
-use super::library::{Allowed, Method};
+use super::library::Allowed;
 use super::mended::Mended;
 use super::note::Note;
 use super::overlap::refuse_overlap;
@@ -107,14 +107,6 @@ impl<'a> Diagnosis<'a> {
     #[must_use]
     pub fn init(mut self, init: Init) -> Self {
         self.init = init;
-        self
-    }
-
-    /// Searches by posterior probabilities instead of step by step.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn by_posterior(mut self, yes: bool) -> Self {
-        self.allowed.method = if yes { Method::Posterior } else { Method::Stepwise };
         self
     }
 

@@ -53,17 +53,6 @@ impl Model {
             && self.added.iter().zip(&other.added).all(same)
     }
 
-    /// Whether another has the same causes, in the same order.
-    pub fn same_causes(&self, other: &Self) -> bool {
-        let mut both = self.added.iter().zip(&other.added);
-        self.added.len() == other.added.len() && both.all(|(a, b)| a.cause.same_cause(&b.cause))
-    }
-
-    /// Natural logarithm of how many sets of causes there are that take as much to say.
-    pub fn cost(&self) -> f64 {
-        self.added.iter().map(|added| added.cause.cost()).sum()
-    }
-
     /// The same without one of its causes.
     pub fn without(&self, index: usize) -> Self {
         let mut model = self.clone();

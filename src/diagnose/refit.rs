@@ -32,12 +32,6 @@ pub(crate) struct Refit {
 }
 
 impl Refit {
-    /// For choosing between candidates.
-    pub fn search() -> Self {
-        let settings = Settings { iterations: 12, tolerance: 1e-4, difference: 2e-3 };
-        Self { settings, grain: Grain::Coarse, whole: false }
-    }
-
     /// For the final numbers.
     pub fn last() -> Self {
         let settings = Settings { iterations: 25, tolerance: 1e-7, difference: 1e-4 };

@@ -123,11 +123,11 @@ impl Teller<'_, '_> {
             causes,
             series: self.series(chosen, &y_before, curve),
             extended,
-            verdict_probability: chosen.found.posterior.as_ref().and_then(|of| match verdict {
-                Verdict::NothingFound => Some(of.nothing),
-                Verdict::CausesFound => Some(1.0 - of.nothing),
+            verdict_probability: match verdict {
+                Verdict::NothingFound => Some(chosen.found.nothing),
+                Verdict::CausesFound => Some(1.0 - chosen.found.nothing),
                 _ => None,
-            }),
+            },
             withdrawn,
             missing: vec![],
         })

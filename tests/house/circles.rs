@@ -13,7 +13,7 @@ const KNOWN: [&str; 12] = [
     "src/core/data: arrays, csv, kind, mat, npy, npz, parquet, records, table, text",
     "src/core/evaluate: run, simulate",
     "src/core/model: lane_number, law, march, physics",
-    "src/diagnose: accept, acts, alone, believe, cause, causes, certify, diagnosis, faults, feedback, finding, finished, found, gain, limits, mended, naming, pairs, plan, precision, prepared, profile, regime, remarks, search, searched, sets, shown, stretches, teller, track",
+    "src/diagnose: acts, alone, cause, causes, certify, diagnosis, faults, feedback, finding, finished, gain, limits, mended, naming, plan, precision, prepared, profile, regime, remarks, searched, shown, stretches, teller, track",
     "src/diagnose: dependence, nominal",
     "src/diagnose: nuisance, together",
     "src/diagnose: problem, remembered",

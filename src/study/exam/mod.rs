@@ -80,9 +80,6 @@ pub struct Exam {
     /// Triples drawn per machine and seed.
     #[serde(default)]
     pub triples: usize,
-    /// Whether causes are searched for step by step instead of by their posterior.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub stepwise: bool,
 }
 
 fn sizes() -> Vec<f64> {

@@ -105,7 +105,7 @@ impl Exam {
         let mut made = machine.make(&systems[case.system], case, seed)?;
         made.record.source = format!("case {} of the exam", case.number);
         made.third.source = format!("case {} of the exam, third record", case.number);
-        let mut diagnosis = Diagnosis::of(&made.baseline).by_posterior(!self.stepwise);
+        let mut diagnosis = Diagnosis::of(&made.baseline);
         if case.kind == super::Kind::Missing {
             let hidden =
                 case.hidden.iter().map(|&h| machine.hidden[h].placed.effect.typetag_name());
