@@ -17,7 +17,7 @@ mod plan;
 mod records;
 mod refusal;
 mod report;
-mod schema;
+pub mod schema;
 mod work;
 
 /// A model that takes a moment to simulate.

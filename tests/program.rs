@@ -3,6 +3,8 @@
 //! One binary for all, because linking costs more than compiling.
 
 mod cli;
+mod exam_cli;
+mod exam_machines;
 mod interrupts;
 mod pendulum;
 mod several_causes;

@@ -3,6 +3,7 @@
 mod columns;
 mod diagnose;
 mod estimate;
+mod exam;
 mod export;
 mod look;
 mod man;
@@ -17,6 +18,7 @@ use clap::{Args as Arguments, Parser, Subcommand};
 pub use columns::Columns;
 pub use diagnose::Diagnose;
 pub use estimate::Estimate;
+pub use exam::{Exam, ExamVerb};
 pub use export::{Export, ExportTo};
 pub use look::Look;
 pub use man::Man;
@@ -155,9 +157,13 @@ pub enum Command {
         after_help = "Examples:\n  lacuna study --config study.toml --out study\n  \
         lacuna study --config study.toml --shard 2/4 --out shard2\n  \
         lacuna study merge shard1 shard2 shard3 shard4 --out study\n  \
-        lacuna study --config examples/exam/exam.toml --out exam"
+        lacuna study --config examples/exam/exam.toml --out exam\n  \
+        lacuna study --config examples/exam/exam.toml --cases\n  \
+        lacuna study --config examples/exam/exam.toml --case case17 --out exam"
     )]
     Study(Study),
+    /// Writes, answers and marks exams of hidden effects, for any tool; tells how sure answers are
+    Exam(Exam),
     /// Draws the page of a diagnosis again from what was stored beside it
     #[command(after_help = "Example:\n  lacuna report lacuna-out\n\n\
         Reads report-data.json, which `diagnose` writes, and writes report.html anew: after an update\n\

@@ -11,6 +11,7 @@ mod console;
 mod demo;
 mod diagnose;
 mod estimate;
+mod exam;
 mod export;
 mod failure;
 mod fit;
@@ -64,6 +65,7 @@ fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         Command::Fit(fit) => fit::run(fit, seed, args.common.threads, look),
         Command::Generate(generate) => generate::run(generate, seed, look),
         Command::Study(study) => study::run(study, seed, args.common.threads, look),
+        Command::Exam(exam) => exam::run(exam, seed, look),
         Command::Look(args) => look::run(args, look),
         Command::Plan(plan) => plan::run(plan, look),
         Command::Check(check) => check::run(check, look),

@@ -26,11 +26,12 @@ use lacuna::fault::Place;
 /// Bytes at a file's beginning in which it says who wrote it.
 const HEAD: u64 = 4096;
 /// Tables that lacuna writes, by how their first lines begin.
-const TABLES: [&str; 4] = [
+const TABLES: [&str; 5] = [
     "epoch,loss,rate,best,rolled_back",
     "start,seed,best_epoch",
     "start,steps,epoch,least",
     "case,system,hidden,",
+    "case,seconds",
 ];
 /// Keys of which a JSON document of lacuna has one.
 const KEYS: [&str; 4] = ["schema", "fingerprint", "format", "encoder"];

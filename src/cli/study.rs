@@ -10,12 +10,13 @@ use super::outputs;
 use lacuna::data::Record;
 use lacuna::digits::number;
 use lacuna::file::Document;
-use lacuna::study::{ExamResult, Inputs, MonteCarlo, StudyResult};
+use lacuna::study::{ExamResult, Inputs, Job, MonteCarlo, StudyResult};
 
-mod exam;
+pub mod exam;
 
 /// What a study or an exam writes into its folder.
-const FILES: [&str; 5] = ["study.json", "runs.csv", "courses.csv", "cases.csv", "report.html"];
+const FILES: [&str; 6] =
+    ["study.json", "runs.csv", "courses.csv", "cases.csv", "seconds.csv", "report.html"];
 
 pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Result<u8, Failure> {
     if let Some(StudyVerb::Merge(merge)) = &args.verb {
@@ -36,8 +37,14 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     }
     let study: MonteCarlo = document.read()?;
     study.check()?;
+    if args.cases {
+        return list(study.jobs().into_iter().map(Job::key), look);
+    }
     let (i, n) = args.shard.unwrap_or((1, 1));
-    let jobs = study.share(i, n)?;
+    let jobs = match &args.case[..] {
+        [] => study.share(i, n)?,
+        keys => keys.iter().map(|key| study.job(key)).collect::<Result<_, _>>()?,
+    };
     let beside = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
     let test: Vec<_> = study.test.iter().map(beside).collect();
     let [data, validate] =
@@ -58,8 +65,10 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     };
     look.hear_interrupts()?;
     let threads = all_unless(threads);
-    let (wanted, whole) = (jobs.len(), n == 1);
-    let done = study.run(&inputs, &jobs, i == 1, threads, seed, &args.out, look)?;
+    // the study of noise belongs to the first training
+    let with_noise = jobs.first() == study.jobs().first();
+    let (wanted, whole) = (jobs.len(), n == 1 && args.case.is_empty());
+    let done = study.run(&inputs, &jobs, with_noise, threads, seed, &args.out, look)?;
     look.clear();
     if done < wanted {
         look.result(&format!(
@@ -70,6 +79,9 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
         );
         return Ok(0);
     }
+    if !args.case.is_empty() {
+        return some(&args.case, &args.out, look);
+    }
     if !whole {
         look.result(&format!("Shard {i}/{n} is done: {done} trainings in {}.", args.out.display()));
         look.document(
@@ -78,6 +90,21 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
         return Ok(0);
     }
     finish(&StudyResult::merge(std::slice::from_ref(&args.out))?, &args.out, look)
+}
+
+/// Lists keys, one a line, as `--case` takes them.
+fn list(keys: impl Iterator<Item = String>, look: &Console) -> Result<u8, Failure> {
+    let keys: Vec<String> = keys.collect();
+    keys.iter().for_each(|key| look.result(key));
+    look.document(&serde_json::json!({ "schema": 1, "cases": keys }));
+    Ok(0)
+}
+
+/// Says that some cases are done, and not the whole.
+fn some(keys: &[String], out: &Path, look: &Console) -> Result<u8, Failure> {
+    look.result(&format!("Done: {} in {}.", keys.join(", "), out.display()));
+    look.document(&serde_json::json!({ "schema": 1, "done": keys.len(), "of": keys.len() }));
+    Ok(0)
 }
 
 fn all_unless(threads: Option<usize>) -> usize {

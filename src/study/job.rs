@@ -22,8 +22,8 @@ pub struct Job {
 }
 
 impl Job {
-    /// Name of its files.
-    pub(crate) fn name(self) -> String {
+    /// Its key: the name of its files, and what `--case` takes.
+    pub fn key(self) -> String {
         format!("start{}_seed{}", self.start + 1, self.seed)
     }
 }
@@ -92,7 +92,7 @@ impl MonteCarlo {
         };
         let (start, started) = recipe.start(&inputs.system, &inputs.training, own)?;
         let initialiser_seconds = began.elapsed().as_secs_f64();
-        let path = folder.join(format!("{}.checkpoint.json", job.name()));
+        let path = folder.join(format!("{}.checkpoint.json", job.key()));
         let checkpoint = Some(Checkpoint { path: path.clone(), every: 200 });
         let trainer = crate::train::Trainer { seed: own, threads, checkpoint, ..recipe.training };
         let fit = trainer.fit(&start, &inputs.training, &inputs.validation, follow)?;
@@ -111,7 +111,7 @@ impl MonteCarlo {
             initialiser_seconds,
             seconds: began.elapsed().as_secs_f64(),
         };
-        let to = folder.join(format!("{}.json", job.name()));
+        let to = folder.join(format!("{}.json", job.key()));
         write(&to, &done)?;
         // the result is there: the way to it is no longer needed
         let _ = std::fs::remove_file(path);
@@ -125,7 +125,7 @@ impl MonteCarlo {
         frame: &Frame,
         folder: &Path,
     ) -> Result<Option<Done>, StudyError> {
-        let path = folder.join(format!("{}.json", job.name()));
+        let path = folder.join(format!("{}.json", job.key()));
         if !path.exists() {
             return Ok(None);
         }

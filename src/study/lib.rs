@@ -22,7 +22,10 @@ mod result;
 mod run;
 
 pub use error::StudyError;
-pub use exam::{Case, Concealed, Exam, ExamResult, Hit, Kind, Machine, Marks, Tally};
+pub use exam::{
+    Answer, Answered, Answers, Calibration, Case, CaseFile, CaseTruth, Concealed, Conditions, Exam,
+    ExamResult, Hidden, Hit, Kind, Machine, Marks, Named, Noise, Number, Outside, Tally, Written,
+};
 pub use figures::StudyReport;
 pub use generate::{Generate, Generated, Truth};
 pub use job::{Done, Frame, Job};

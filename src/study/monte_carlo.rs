@@ -111,6 +111,17 @@ impl MonteCarlo {
         (0..self.starts.len()).flat_map(of).collect()
     }
 
+    /// The job of a key that [`Job::key`] gives.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such job.
+    pub fn job(&self, key: &str) -> Result<Job, StudyError> {
+        let found = self.jobs().into_iter().find(|job| job.key() == key);
+        let expected = "a key that `--cases` lists, such as start1_seed1";
+        found.ok_or_else(|| StudyError::setting("--case", key, expected))
+    }
+
     /// The jobs of shard `i` of `n`, counted from 1: every n-th.
     ///
     /// # Errors

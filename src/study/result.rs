@@ -96,13 +96,16 @@ impl StudyResult {
         let missing: Vec<String> = wanted
             .iter()
             .filter(|job| !done.iter().any(|done| done.job == **job))
-            .map(|job| job.name())
+            .map(|job| job.key())
             .collect();
         if !missing.is_empty() {
             let reason = format!("missing: {}", missing.join(", "));
             return Err(StudyError::merge(&nowhere, reason));
         }
-        done.dedup_by_key(|done| done.job);
+        if let Some(pair) = done.windows(2).find(|pair| pair[0].job == pair[1].job) {
+            let reason = format!("{} stands in more than one of the folders", pair[0].job.key());
+            return Err(StudyError::merge(&nowhere, reason));
+        }
         Ok(Self { frame, done, noise })
     }
 

@@ -58,7 +58,7 @@ fn faults(value: &Value, schema: &Value, path: &str, found: &mut Vec<String>) {
     }
 }
 
-fn faults_of(document: &Value, schema: &str) -> Vec<String> {
+pub fn faults_of(document: &Value, schema: &str) -> Vec<String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/schema");
     let text = std::fs::read_to_string(path.join(format!("{schema}.json"))).unwrap();
     let mut found = vec![];

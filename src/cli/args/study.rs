@@ -14,6 +14,12 @@ pub struct Study {
     /// Only every n-th training, from the i-th on; `merge` puts the shards together
     #[arg(long, value_name = "I/N", value_parser = shard)]
     pub shard: Option<(usize, usize)>,
+    /// Only lists the keys of all cases, one a line
+    #[arg(long, conflicts_with_all = ["shard", "case"])]
+    pub cases: bool,
+    /// Only these cases, by their keys; each writes one file, and what is there is not done again
+    #[arg(long, value_name = "KEY", num_args = 1.., conflicts_with = "shard")]
+    pub case: Vec<String>,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
     pub out: PathBuf,

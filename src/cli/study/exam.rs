@@ -7,8 +7,18 @@ use crate::console::Console;
 use crate::failure::Failure;
 use crate::input;
 use lacuna::file::Document;
-use lacuna::study::{Exam, ExamResult};
+use lacuna::study::{Case, Exam, ExamResult};
 use lacuna::system::System;
+
+/// An exam and its machines, whose files stand beside the configuration.
+pub fn configured(document: &Document, config: &Path) -> Result<(Exam, Vec<System>), Failure> {
+    let exam: Exam = document.read()?;
+    exam.check()?;
+    let beside = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
+    let load = |machine: &lacuna::study::Machine| Ok(input::model(&beside(&machine.model))?.0);
+    let systems = exam.systems.iter().map(load).collect::<Result<_, Failure>>()?;
+    Ok((exam, systems))
+}
 
 pub fn run(
     document: &Document,
@@ -18,12 +28,15 @@ pub fn run(
     threads: Option<usize>,
     look: &Console,
 ) -> Result<u8, Failure> {
-    let exam: Exam = document.read()?;
+    let (exam, systems) = configured(document, config)?;
+    if args.cases {
+        return super::list(exam.cases()?.iter().map(Case::key), look);
+    }
     let (i, n) = args.shard.unwrap_or((1, 1));
-    let cases = exam.share(i, n)?;
-    let beside = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
-    let load = |machine: &lacuna::study::Machine| Ok(input::model(&beside(&machine.model))?.0);
-    let systems: Vec<System> = exam.systems.iter().map(load).collect::<Result<_, Failure>>()?;
+    let cases = match &args.case[..] {
+        [] => exam.share(i, n)?,
+        keys => keys.iter().map(|key| exam.case(key)).collect::<Result<_, _>>()?,
+    };
     look.hear_interrupts()?;
     let done = exam.run(&systems, &cases, all_unless(threads), seed, &args.out, look)?;
     look.clear();
@@ -36,6 +49,9 @@ pub fn run(
             &serde_json::json!({ "schema": 1, "done": done, "of": wanted, "interrupted": true }),
         );
         return Ok(0);
+    }
+    if !args.case.is_empty() {
+        return super::some(&args.case, &args.out, look);
     }
     if n > 1 {
         look.result(&format!("Shard {i}/{n} is done: {done} cases in {}.", args.out.display()));
@@ -52,14 +68,10 @@ pub fn finish(result: &ExamResult, out: &Path, look: &Console) -> Result<u8, Fai
     let percent = |v: Option<f64>| v.map_or_else(|| "-".into(), |v| format!("{:.0} %", 100.0 * v));
     for t in result.tallies() {
         look.result(&format!(
-            "{:?}, g = {}, {} samples, {} dB, pole {}, parameters {:.0} % off: {} cases, named {} \
-             (first {}), spurious {}, removed {}",
+            "{:?}, g = {}, {}: {} cases, named {} (first {}), spurious {}, removed {}",
             t.kind,
             t.g,
-            t.samples,
-            t.snr_db,
-            t.noise_pole,
-            100.0 * t.parameter_error,
+            t.conditions,
             t.cases,
             percent(t.named),
             percent(t.first),

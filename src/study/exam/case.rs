@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Exam, Machine};
+use super::{Concealed, Conditions, Exam};
 use crate::data::Random;
 use crate::{StudyError, shard};
 
@@ -19,6 +19,8 @@ pub enum Kind {
     One,
     /// One effect that is not looked for.
     Missing,
+    /// One law that no library has.
+    Outside,
     /// Two effects.
     Two,
     /// Three effects.
@@ -39,16 +41,17 @@ pub struct Case {
     pub hidden: Vec<usize>,
     /// Size of each.
     pub g: f64,
-    /// Samples of the record.
-    pub samples: usize,
-    /// Ratio of output to noise, dB.
-    pub snr_db: f64,
-    /// Pole of the noise.
-    pub noise_pole: f64,
-    /// Share by which the model's free parameters are off.
-    pub parameter_error: f64,
+    /// How its records are taken.
+    pub conditions: Conditions,
     /// Number of the draw, from 1.
     pub seed: u64,
+}
+
+impl Case {
+    /// Its key: the name of its files, and what `--case` takes.
+    pub fn key(&self) -> String {
+        format!("case{}", self.number)
+    }
 }
 
 impl Exam {
@@ -60,31 +63,34 @@ impl Exam {
     pub fn cases(&self) -> Result<Vec<Case>, StudyError> {
         self.check()?;
         let mut cases = vec![];
-        for &samples in &self.samples {
-            for &snr_db in &self.snr_db {
-                for &noise_pole in &self.noise_pole {
-                    for &parameter_error in &self.parameter_error {
-                        let shape = Case {
-                            number: 0,
-                            system: 0,
-                            kind: Kind::Nothing,
-                            hidden: vec![],
-                            g: 0.0,
-                            samples,
-                            snr_db,
-                            noise_pole,
-                            parameter_error,
-                            seed: 0,
-                        };
-                        self.under(&shape, &mut cases);
-                    }
-                }
-            }
+        for conditions in self.conditions() {
+            let shape = Case {
+                number: 0,
+                system: 0,
+                kind: Kind::Nothing,
+                hidden: vec![],
+                g: 0.0,
+                conditions,
+                seed: 0,
+            };
+            self.under(&shape, &mut cases);
         }
         for (i, case) in cases.iter_mut().enumerate() {
             case.number = i + 1;
         }
         Ok(cases)
+    }
+
+    /// The case of a key that [`Case::key`] gives.
+    ///
+    /// # Errors
+    ///
+    /// If there is no such case.
+    pub fn case(&self, key: &str) -> Result<Case, StudyError> {
+        let cases = self.cases()?;
+        let known = format!("a key that `--cases` lists, case1 to case{}", cases.len());
+        let found = cases.into_iter().find(|case| case.key() == key);
+        found.ok_or_else(|| StudyError::setting("--case", key, &known))
     }
 
     /// The cases of shard `i` of `n`, counted from 1: every n-th.
@@ -99,6 +105,8 @@ impl Exam {
     /// All cases under the same conditions.
     fn under(&self, shape: &Case, cases: &mut Vec<Case>) {
         for (system, machine) in self.systems.iter().enumerate() {
+            let inside = &machine.hidden;
+            let outside = inside.len()..inside.len() + machine.outside.len();
             for seed in 1..=self.seeds {
                 let of = |kind, hidden, g| Case {
                     system,
@@ -114,7 +122,7 @@ impl Exam {
                     cases.push(Case { seed, ..of(Kind::Nothing, vec![], 0.0) });
                 }
                 for &g in &self.sizes {
-                    for hidden in 0..machine.hidden.len() {
+                    for hidden in 0..inside.len() {
                         if self.singles {
                             cases.push(of(Kind::One, vec![hidden], g));
                         }
@@ -122,11 +130,12 @@ impl Exam {
                             cases.push(of(Kind::Missing, vec![hidden], g));
                         }
                     }
+                    cases.extend(outside.clone().map(|law| of(Kind::Outside, vec![law], g)));
                     let draws = [(Kind::Two, 2, self.pairs), (Kind::Three, 3, self.triples)];
                     for (kind, size, count) in draws {
                         for draw in 0..count as u64 {
                             let lot = seed.wrapping_mul(1_000_003) + draw * 101 + size as u64;
-                            let hidden = several(machine, size, lot + system as u64 * 17);
+                            let hidden = several(inside, size, lot + system as u64 * 17);
                             cases.push(of(kind, hidden, g));
                         }
                     }
@@ -137,8 +146,7 @@ impl Exam {
 }
 
 /// Some of a machine's effects, none a special case of another: the two together are the other.
-fn several(machine: &Machine, wanted: usize, seed: u64) -> Vec<usize> {
-    let all = &machine.hidden;
+fn several(all: &[Concealed], wanted: usize, seed: u64) -> Vec<usize> {
     let stand_alone = |drawn: &Vec<usize>| {
         !drawn.iter().any(|&a| drawn.iter().any(|&b| all[a].is_case_of(&all[b])))
     };
@@ -182,15 +190,15 @@ mod tests {
             "effect.stribeck_friction = { level = -0.1, extra = -0.1, speed = 0.5, width = 0.02 }",
         );
         let drag = of_speed("effect.drag = { coefficient = -0.1 }");
-        let machine: Machine = toml::from_str(&format!(
+        let machine: crate::exam::Machine = toml::from_str(&format!(
             "model = \"m.toml\"\nexcitation.filtered_noise = {{ rms = 1.0, cutoff = 1.0, order = 2 }}\nhidden = [{dry}, {bump}, {drag}]"
         ))
         .unwrap();
         for seed in 0..50 {
-            let drawn = several(&machine, 2, seed);
+            let drawn = several(&machine.hidden, 2, seed);
             assert!(drawn == [0, 2] || drawn == [1, 2], "{drawn:?}");
         }
         // where there is no other way, they are
-        assert_eq!(several(&machine, 3, 1), [0, 1, 2]);
+        assert_eq!(several(&machine.hidden, 3, 1), [0, 1, 2]);
     }
 }

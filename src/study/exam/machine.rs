@@ -1,12 +1,11 @@
 //! Hides effects of a wanted size in a machine and makes its records.
 
-use serde::{Deserialize, Serialize};
-
-use super::{Case, Machine};
+use super::disturbed::Disturbance;
+use super::{Case, Concealed, Machine};
 use crate::StudyError;
 use crate::data::{Random, Record, noise};
 use crate::digits::number;
-use crate::effect::{Knob, Mechanism, Role};
+use crate::effect::Knob;
 use crate::evaluate::Run;
 use crate::generate::{apart, deviation, rms, seed_of};
 use crate::model::with_parameters;
@@ -17,95 +16,23 @@ use crate::system::{MOST_SUBSTEPS, Placed, System};
 const STEADY: f64 = 0.1;
 const TIMES: f64 = 2.0;
 
-/// An effect to hide, as in a model file. Its values say the direction; how far it goes
-/// follows from the wanted size.
-#[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Concealed {
-    /// The effect at its place.
-    #[serde(flatten)]
-    pub placed: Placed,
-    /// Knobs that grow with the size; absent: the first coefficient, else all that have a
-    /// neutral value.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub size: Vec<String>,
-}
-
 /// What belongs to one case.
 pub(super) struct Made {
     /// What is handed to the diagnosis.
     pub baseline: System,
     /// The truth.
     pub machine: System,
-    /// The record to diagnose.
-    pub record: Record,
+    /// The records to diagnose.
+    pub records: Vec<Record>,
     /// A third record without noise, of another input.
     pub third: Record,
-}
-
-impl Concealed {
-    /// `effect into place of coordinate`, short.
-    pub fn name(&self) -> String {
-        let of = self.placed.of.as_deref().unwrap_or("-");
-        format!("{}>{}<{of}", self.placed.effect.typetag_name(), self.placed.into)
-    }
-
-    /// Whether it is a special case of another one at the same place, so that both together are
-    /// the other.
-    pub(super) fn is_case_of(&self, other: &Self) -> bool {
-        let knobs = |of: &Self| -> Vec<String> {
-            of.placed.effect.card().knobs.iter().map(|knob| knob.name.to_string()).collect()
-        };
-        let (own, others) = (knobs(self), knobs(other));
-        let (a, b) = (&self.placed, &other.placed);
-        (&a.into, &a.of) == (&b.into, &b.of)
-            && own.len() < others.len()
-            && own.iter().all(|knob| others.contains(knob))
-    }
-
-    /// The effect grown by a factor from nothing; `None` beyond what it can be.
-    fn grown(&self, factor: f64, system: &System) -> Result<Option<Placed>, StudyError> {
-        let card = self.placed.effect.card();
-        let mut values = card.values();
-        if card.mechanism == Mechanism::Parameter {
-            let signals = system.signals();
-            let Some(own) = signals.parameters.iter().find(|p| p.name == self.placed.into) else {
-                let known: Vec<&str> = signals.parameters.iter().map(|p| &p.name[..]).collect();
-                let expected = format!("a parameter of the model ({})", known.join(", "));
-                return Err(StudyError::setting("hidden.into", &self.placed.into, &expected));
-            };
-            values[0] = own.value + factor * (values[0] - own.value);
-            if !(values[0] > own.min && values[0] < own.max) {
-                return Ok(None);
-            }
-        } else {
-            let grows = |name: &str, role: Role, neutral: Option<f64>| match &self.size[..] {
-                [] if card.knobs.iter().any(|k| k.role == Role::Coefficient) => {
-                    role == Role::Coefficient
-                }
-                [] => neutral.is_some(),
-                named => named.iter().any(|n| n == name),
-            };
-            for (value, knob) in values.iter_mut().zip(&card.knobs) {
-                if grows(&knob.name, knob.role, knob.neutral) {
-                    *value = match knob.neutral {
-                        Some(neutral) if neutral.is_infinite() => *value / factor,
-                        Some(neutral) => neutral + factor * (*value - neutral),
-                        None => *value * factor,
-                    };
-                }
-            }
-        }
-        let effect = self.placed.effect.with_values(&values);
-        let effect = effect.map_err(|e| StudyError::setting("hidden.effect", e, "an effect"))?;
-        Ok(Some(Placed { effect, ..self.placed.clone() }))
-    }
 }
 
 impl Machine {
     /// Checks that every effect can be where it is to be hidden.
     pub(super) fn check(&self, system: &System) -> Result<(), StudyError> {
         let sampling_time = system.sampling_time(self.sampling_time)?;
-        for concealed in &self.hidden {
+        for concealed in &self.concealed()? {
             let mut machine = system.clone();
             machine.effects.extend(concealed.grown(1.0, system)?);
             machine.plan(sampling_time)?;
@@ -155,31 +82,64 @@ impl Machine {
     /// Everything of a case.
     pub(super) fn make(&self, truth: &System, case: &Case, seed: u64) -> Result<Made, StudyError> {
         let own = seed_of(apart(seed), case.seed, case.system as u64);
-        let driven = self.driven(truth, case.samples, own)?;
+        let samples = case.conditions.samples;
+        let driven = self.driven(truth, samples, own)?;
         let diverges = || StudyError::Diverges { sample: 0 };
         let base = self.outputs(truth, &driven)?.ok_or_else(diverges)?;
-        let sigma = |y: &Vec<f64>| deviation(y) * 10f64.powf(-case.snr_db / 20.0);
+        let sigma = |y: &Vec<f64>| deviation(y) * 10f64.powf(-case.conditions.snr_db / 20.0);
         let sigmas: Vec<f64> = base.iter().map(sigma).collect();
-        let mut machine = truth.clone();
+        let (mut machine, all) = (truth.clone(), self.concealed()?);
         for &hidden in &case.hidden {
-            let grown = self.sized(hidden, truth, &driven, &base, &sigmas, case.g)?;
+            let grown = self.sized(&all[hidden], truth, &driven, &base, &sigmas, case.g)?;
             machine.effects.push(grown);
         }
         let y = self.outputs(&machine, &driven)?.ok_or_else(diverges)?;
         self.check_steps(case, (truth, &base), (&machine, &y), &driven, &sigmas)?;
-        let noisy = y.into_iter().zip(&sigmas).enumerate().map(|(o, (y, &sigma))| {
-            let seed = seed_of(own, 1, o as u64);
-            let e = match case.noise_pole {
-                0.0 => noise::white(y.len(), sigma, seed)?,
-                pole => noise::ar1(y.len(), pole, sigma, seed)?,
-            };
-            Ok::<_, StudyError>(y.iter().zip(e).map(|(y, e)| y + e).collect())
-        });
-        let record = self.measured(&driven, truth, noisy.collect::<Result<_, _>>()?)?;
-        let other = self.driven(truth, case.samples, seed_of(own, 2, 0))?;
+        let mut records = vec![self.taken(case, (truth, &machine), &driven, y, &sigmas, own)?];
+        for number in 1..case.conditions.records {
+            let own = seed_of(own, 10 + number as u64, 0);
+            let driven = self.driven(truth, samples, own)?;
+            let y = self.outputs(&machine, &driven)?.ok_or_else(diverges)?;
+            records.push(self.taken(case, (truth, &machine), &driven, y, &sigmas, own)?);
+        }
+        let other = self.driven(truth, samples, seed_of(own, 2, 0))?;
         let y = self.outputs(&machine, &other)?.ok_or_else(diverges)?;
         let third = self.measured(&other, truth, y)?;
-        Ok(Made { baseline: off(truth, case, own)?, machine, record, third })
+        Ok(Made { baseline: off(truth, case, own)?, machine, records, third })
+    }
+
+    /// One record as it is taken: disturbed, by noisy sensors, of inputs that are not known exactly.
+    fn taken(
+        &self,
+        case: &Case,
+        (truth, machine): (&System, &System),
+        driven: &Record,
+        mut y: Vec<Vec<f64>>,
+        sigmas: &[f64],
+        own: u64,
+    ) -> Result<Record, StudyError> {
+        let at = &case.conditions;
+        let onset = at.onset > 0.0 && !case.hidden.is_empty();
+        if onset || at.process_noise > 0.0 {
+            let forces = self.forces(truth, driven, sigmas, at.process_noise, own)?;
+            let sample = self.transient + (at.onset * at.samples as f64) as usize;
+            let before = onset.then_some((truth, sample));
+            let disturbed =
+                self.outputs_disturbed(machine, driven, &Disturbance { before, forces })?;
+            y = disturbed.ok_or(StudyError::Diverges { sample: 0 })?;
+        }
+        let noisy = y.into_iter().zip(sigmas).enumerate();
+        let noisy =
+            noisy.map(|(o, (y, &sigma))| at.noise.measured(y, sigma, seed_of(own, 1, o as u64)));
+        let mut record = self.measured(driven, truth, noisy.collect::<Result<_, _>>()?)?;
+        if at.input_noise > 0.0 {
+            for (i, input) in record.inputs.iter_mut().enumerate() {
+                let sigma = at.input_noise * deviation(&input.values);
+                let e = noise::white(input.values.len(), sigma, seed_of(own, 5, i as u64))?;
+                input.values.iter_mut().zip(e).for_each(|(u, e)| *u += e);
+            }
+        }
+        Ok(record)
     }
 
     /// Checks that what is hidden is the machine's and not the integrator's: a law that is too
@@ -222,14 +182,13 @@ impl Machine {
     /// A hidden effect so large that it makes the residual 1 + g times the noise.
     fn sized(
         &self,
-        hidden: usize,
+        concealed: &Concealed,
         truth: &System,
         driven: &Record,
         base: &[Vec<f64>],
         sigmas: &[f64],
         g: f64,
     ) -> Result<Placed, StudyError> {
-        let concealed = &self.hidden[hidden];
         let want = ((1.0 + g).powi(2) - 1.0).sqrt();
         let size = |factor: f64| -> Result<f64, StudyError> {
             let Some(placed) = concealed.grown(factor, truth)? else {
@@ -264,7 +223,7 @@ fn difference(a: &[f64], b: &[f64]) -> Vec<f64> {
 
 /// The model that is handed out: its free parameters off by a share, up or down by lot.
 fn off(truth: &System, case: &Case, seed: u64) -> Result<System, StudyError> {
-    if case.parameter_error == 0.0 {
+    if case.conditions.parameter_error == 0.0 {
         return Ok(truth.clone());
     }
     let mut random = Random::new(seed_of(seed, 3, 0));
@@ -275,7 +234,10 @@ fn off(truth: &System, case: &Case, seed: u64) -> Result<System, StudyError> {
         .filter(|p| !p.fixed)
         .map(|p| {
             let sign = if random.uniform() < 0.5 { -1.0 } else { 1.0 };
-            (p.name.clone(), (p.value * (1.0 + sign * case.parameter_error)).clamp(p.min, p.max))
+            (
+                p.name.clone(),
+                (p.value * (1.0 + sign * case.conditions.parameter_error)).clamp(p.min, p.max),
+            )
         })
         .collect();
     let model = with_parameters(truth.model.as_ref(), &changes)

@@ -1,13 +1,14 @@
-//! What a diagnosis made of a case.
+//! What an answer to a case is worth.
 
 use serde::{Deserialize, Serialize};
 
-use super::machine::Made;
-use super::{Case, Kind, Machine};
+use super::answer::{Answer, Answered, short};
+use super::truth::{CaseTruth, Hidden};
+use super::{Case, Kind};
 use crate::StudyError;
-use crate::diagnose::{Cause, Finding, Verdict};
+use crate::data::Record;
 use crate::evaluate::{Init, Simulation};
-use crate::system::{Placed, System};
+use crate::system::System;
 
 /// Standard errors to either side of a 95 % interval.
 const WIDE: f64 = 1.96;
@@ -32,6 +33,9 @@ pub struct Marks {
     pub fingerprint: u64,
     /// Cases of the whole exam.
     pub of: usize,
+    /// Seed of the exam.
+    #[serde(default)]
+    pub seed: u64,
     /// The question.
     pub case: Case,
     /// Name of the machine.
@@ -55,31 +59,36 @@ pub struct Marks {
     pub covered: Vec<bool>,
     /// Whether the true gain lies in its 95 % interval.
     pub gain_covered: Option<bool>,
+    /// Every probability that was given to a name, and whether the name was right.
+    #[serde(default)]
+    pub told: Vec<(f64, bool)>,
+    /// Estimated less true coefficients of exact hits, in standard errors.
+    #[serde(default)]
+    pub standardised: Vec<f64>,
+    /// The middle of the gain's interval less the true gain, in its standard errors.
+    #[serde(default)]
+    pub gain_standardised: Option<f64>,
     /// Seconds of the diagnosis.
     pub seconds: f64,
 }
 
-fn short(effect: &str, into: &str, of: Option<&str>) -> String {
-    format!("{effect}>{into}<{}", of.unwrap_or("-"))
-}
-
-fn headline(cause: &Cause) -> String {
+fn headline(cause: &Answered) -> String {
     short(&cause.effect, &cause.into, cause.of.as_deref())
 }
 
-fn beside(cause: &Cause) -> Vec<String> {
+fn beside(cause: &Answered) -> Vec<String> {
     let others = cause.indistinguishable.iter();
     others.map(|other| short(&other.effect, &other.into, other.of.as_deref())).collect()
 }
 
 /// Its laws, short: one of a plain law, several of a sum at one place.
-fn laws(cause: &Cause) -> Vec<String> {
+fn laws(cause: &Answered) -> Vec<String> {
     let parts = cause.parts.iter();
     let laws = parts.map(|part| short(&part.effect, &cause.into, cause.of.as_deref()));
     std::iter::once(headline(cause)).chain(laws.filter(|law| *law != headline(cause))).collect()
 }
 
-fn hit(cause: &Cause, name: &str) -> Hit {
+fn hit(cause: &Answered, name: &str) -> Hit {
     match laws(cause).iter().any(|law| law == name) {
         true => Hit::Exact,
         false if beside(cause).iter().any(|other| other == name) => Hit::InSet,
@@ -88,26 +97,45 @@ fn hit(cause: &Cause, name: &str) -> Hit {
 }
 
 /// Mean square of what a system leaves of a record without noise, all outputs together.
-fn left(of: &System, made: &Made) -> Result<f64, StudyError> {
-    let run = Simulation::of(of, &made.third, Init::Forgotten)?;
+fn left(of: &System, third: &Record) -> Result<f64, StudyError> {
+    let run = Simulation::of(of, third, Init::Forgotten)?;
     let whole = run.diverged_at.is_none();
     let all: f64 = run.metrics.iter().map(|(_, m)| m.rmse * m.rmse).sum();
     Ok(if whole && all.is_finite() { all } else { f64::INFINITY })
 }
 
-/// Whether the coefficients of a cause hold the true ones; `parameter` carries its `value`.
-fn covers(cause: &Cause, truth: &Placed) -> Vec<bool> {
-    let card = truth.effect.card();
-    let mut inside = vec![];
-    for (knob, value) in card.knobs.iter().zip(card.values()) {
-        let own = cause.parts.iter().find(|part| part.effect == truth.effect.typetag_name());
-        let parameters = own.map_or(&cause.parameters, |part| &part.parameters);
-        let known = parameters.iter().find(|p| p.name == knob.name);
-        if let Some((of, error)) = known.and_then(|p| Some((p, p.std_error?))) {
-            inside.push((of.value - value).abs() <= WIDE * error);
-        }
+/// Share of the mean square that an extended model removes on a third record without noise.
+pub(super) fn removed(
+    extended: &System,
+    baseline: &System,
+    third: &Record,
+) -> Result<f64, StudyError> {
+    Ok(1.0 - left(extended, third)? / left(baseline, third)?)
+}
+
+/// Coefficients of a cause less the true ones, in standard errors; `parameter` carries its `value`.
+fn standardised(cause: &Answered, truth: &Hidden) -> Vec<f64> {
+    let part = cause.parts.iter().find(|part| part.effect == truth.effect);
+    let parameters = part.map_or(&cause.parameters, |part| &part.parameters);
+    let one = |own: &super::Number| {
+        let known = parameters.iter().find(|p| p.name == own.name)?;
+        let error = known.std_error.filter(|error| *error > 0.0)?;
+        Some((known.value - own.value) / error)
+    };
+    truth.parameters.iter().filter_map(one).filter(|z| z.is_finite()).collect()
+}
+
+/// Every probability that was given to a name, and whether that name was hidden.
+fn told(causes: &[&Answered], hidden: &[String]) -> Vec<(f64, bool)> {
+    let is_hidden = |name: &String| hidden.contains(name);
+    let mut all = vec![];
+    for cause in causes {
+        // a sum is right where one of its laws is
+        all.extend(cause.probability.map(|p| (p, laws(cause).iter().any(is_hidden))));
+        let others = cause.indistinguishable.iter().zip(beside(cause));
+        all.extend(others.filter_map(|(o, name)| Some((o.probability?, is_hidden(&name)))));
     }
-    inside
+    all
 }
 
 impl Marks {
@@ -116,51 +144,45 @@ impl Marks {
         self.found.first().map_or(0, |_| 1 + self.beside.len())
     }
 
-    /// Marks a finding.
-    pub(super) fn of(
-        case: &Case,
-        machine: &Machine,
-        made: &Made,
-        finding: &Finding,
-        (fingerprint, of): (u64, usize),
-    ) -> Result<Self, StudyError> {
-        let causes: Vec<&Cause> = finding.causes.iter().filter(|c| c.rows.is_none()).collect();
-        let hidden: Vec<String> = case.hidden.iter().map(|&h| machine.hidden[h].name()).collect();
+    /// Marks an answer; `removed` is the share of the mean square that its extended model removes
+    /// on the third record, where it has one.
+    pub fn of(truth: &CaseTruth, answer: &Answer, removed: Option<f64>) -> Self {
+        let causes: Vec<&Answered> = answer.causes.iter().filter(|c| c.rows.is_none()).collect();
+        let hidden: Vec<String> = truth.hidden.iter().map(Hidden::name).collect();
         let best = |name: &String| causes.iter().map(|c| hit(c, name)).max();
         let hits: Vec<Hit> = hidden.iter().map(|n| best(n).unwrap_or(Hit::Missed)).collect();
-        let truths = &made.machine.effects[made.machine.effects.len() - case.hidden.len()..];
-        let covered = hidden
-            .iter()
-            .zip(truths)
-            .filter_map(|(name, truth)| {
-                let cause = causes.iter().find(|c| hit(c, name) == Hit::Exact)?;
-                Some(covers(cause, truth))
-            })
-            .flatten()
-            .collect();
-        let removed = match case.kind {
-            Kind::Nothing => None,
-            _ => Some(1.0 - left(&finding.extended, made)? / left(&made.baseline, made)?),
+        let exact = |(name, truth): (&String, &Hidden)| {
+            let cause = causes.iter().find(|c| hit(c, name) == Hit::Exact)?;
+            Some(standardised(cause, truth))
         };
-        let [low, high] = finding.gain.interval95;
-        Ok(Self {
-            fingerprint,
-            of,
-            case: case.clone(),
-            system: machine.name(),
+        let standardised: Vec<f64> =
+            hidden.iter().zip(&truth.hidden).filter_map(exact).flatten().collect();
+        let removed = removed.filter(|_| truth.case.kind != Kind::Nothing);
+        let interval = answer.gain.as_ref().filter(|_| !causes.is_empty()).map(|g| g.interval95);
+        let gain = removed.zip(interval);
+        Self {
+            fingerprint: truth.fingerprint,
+            of: truth.of,
+            seed: truth.seed,
+            case: truth.case.clone(),
+            system: truth.system.clone(),
             first: causes.first().is_some_and(|c| hidden.iter().any(|n| hit(c, n) > Hit::Missed)),
             found: causes.iter().flat_map(|c| laws(c)).collect(),
             beside: causes.first().map_or(vec![], |c| beside(c)),
-            verdict: verdict(finding.verdict).into(),
-            gain_covered: removed
-                .filter(|_| !causes.is_empty())
-                .map(|share| low <= share && share <= high),
+            verdict: answer.verdict.clone().unwrap_or_default(),
+            gain_covered: gain.map(|(share, [low, high])| low <= share && share <= high),
+            gain_standardised: gain.and_then(|(share, [low, high])| {
+                let z = (0.5 * (low + high) - share) / ((high - low) / (2.0 * WIDE));
+                z.is_finite().then_some(z)
+            }),
+            told: told(&causes, &hidden),
+            covered: standardised.iter().map(|z| z.abs() <= WIDE).collect(),
+            standardised,
             removed,
-            covered,
             hidden,
             hits,
-            seconds: finding.seconds,
-        })
+            seconds: answer.seconds,
+        }
     }
 
     /// Whether all that was hidden was found.
@@ -171,7 +193,8 @@ impl Marks {
     /// Whether nothing was named beside what was hidden, by number. Wrong parameters may be.
     pub fn spurious(&self) -> usize {
         let named = self.found.iter().filter(|name| {
-            let wrong = self.case.parameter_error > 0.0 && name.starts_with("parameter>");
+            let wrong =
+                self.case.conditions.parameter_error > 0.0 && name.starts_with("parameter>");
             !wrong
         });
         named.count().saturating_sub(self.hits.iter().filter(|h| **h > Hit::Missed).count())
@@ -184,14 +207,5 @@ impl Marks {
             && !self.found.is_empty()
             && self.found.iter().all(|name| name.starts_with("parameter>"))
             && self.removed.is_some_and(|share| share >= 0.9)
-    }
-}
-
-fn verdict(of: Verdict) -> &'static str {
-    match of {
-        Verdict::CausesFound => "causes_found",
-        Verdict::NothingFound => "nothing_found",
-        Verdict::Unexplained => "unexplained",
-        Verdict::DataFault => "data_fault",
     }
 }

@@ -1,20 +1,36 @@
 //! An exam of the diagnosis: effects are hidden in machines, and it has to find them.
 
+mod answer;
+mod calibration;
 mod case;
+mod concealed;
+mod conditions;
+mod disturbed;
+mod folder;
 mod machine;
+mod mark;
 mod marks;
+mod noise;
 mod result;
 mod sheet;
+mod tally;
+mod truth;
 mod work;
 
 use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub use answer::{Answer, Answered, Answers, Named, Number};
+pub use calibration::Calibration;
 pub use case::{Case, Kind};
-pub use machine::Concealed;
+pub use concealed::{Concealed, Outside};
+pub use conditions::{Conditions, Noise};
+pub use folder::{CaseFile, Written};
 pub use marks::{Hit, Marks};
-pub use result::{ExamResult, Tally};
+pub use result::ExamResult;
+pub use tally::Tally;
+pub use truth::{CaseTruth, Hidden};
 
 use super::StudyError;
 use crate::data::Excitation;
@@ -56,11 +72,26 @@ pub struct Exam {
     /// Ratio of output to noise, dB.
     #[serde(default = "snr_db")]
     pub snr_db: Vec<f64>,
-    /// Pole of the noise: 0 is white.
-    #[serde(default = "noise_pole")]
+    /// Poles of the noise: 0 is white.
+    #[serde(default = "zero")]
     pub noise_pole: Vec<f64>,
+    /// Further kinds of noise.
+    #[serde(default)]
+    pub noise: Vec<Noise>,
+    /// Noise in the channels of the model: what it does to the outputs over the sensor's noise.
+    #[serde(default = "zero")]
+    pub process_noise: Vec<f64>,
+    /// Noise of the recorded inputs over their standard deviation.
+    #[serde(default = "zero")]
+    pub input_noise: Vec<f64>,
+    /// Shares of the record after which hidden effects begin.
+    #[serde(default = "zero")]
+    pub onset: Vec<f64>,
+    /// Numbers of records of one machine.
+    #[serde(default = "one_record")]
+    pub records: Vec<usize>,
     /// Share by which every free parameter of the model is off, up or down by lot.
-    #[serde(default = "parameter_error")]
+    #[serde(default = "zero")]
     pub parameter_error: Vec<f64>,
     /// Number of seeds.
     #[serde(default = "one")]
@@ -91,11 +122,11 @@ fn samples() -> Vec<usize> {
 fn snr_db() -> Vec<f64> {
     vec![20.0]
 }
-fn noise_pole() -> Vec<f64> {
+fn zero() -> Vec<f64> {
     vec![0.0]
 }
-fn parameter_error() -> Vec<f64> {
-    vec![0.0]
+fn one_record() -> Vec<usize> {
+    vec![1]
 }
 fn one() -> u64 {
     1
@@ -126,6 +157,9 @@ pub struct Machine {
     pub transient: usize,
     /// What may be hidden in it.
     pub hidden: Vec<Concealed>,
+    /// Laws that no library has, each hidden by itself.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outside: Vec<Outside>,
 }
 
 impl Machine {
@@ -147,16 +181,27 @@ impl Exam {
             ("sizes", &self.sizes, 0.0, 1e6),
             ("snr_db", &self.snr_db, -100.0, 300.0),
             ("noise_pole", &self.noise_pole, -1.0, 1.0),
+            ("process_noise", &self.process_noise, -1e-300, 1e3),
+            ("input_noise", &self.input_noise, -1e-300, 10.0),
+            ("onset", &self.onset, -1e-300, 1.0),
             ("parameter_error", &self.parameter_error, -1e-300, 1.0),
         ];
         for (key, values, above, below) in positive {
-            if values.is_empty() {
+            let others = key == "noise_pole" && !self.noise.is_empty();
+            if values.is_empty() && !others {
                 return Err(StudyError::setting(key, "empty", "at least one number"));
             }
             if let Some(value) = values.iter().find(|v| !(**v > above && **v < below)) {
                 let expected = format!("between {above} and {below}");
                 return Err(StudyError::setting(key, value, &expected));
             }
+        }
+        if let Some(noise) = self.noise.iter().find(|noise| !noise.is_possible()) {
+            let expected = "within its range: pole and share below 1, freedom 3 or more";
+            return Err(StudyError::setting("noise", noise, expected));
+        }
+        if self.records.is_empty() || self.records.contains(&0) {
+            return Err(StudyError::setting("records", "empty or 0", "numbers of records"));
         }
         if self.samples.is_empty() || self.samples.contains(&0) {
             return Err(StudyError::setting("samples", "empty or 0", "numbers of samples"));

@@ -17,6 +17,7 @@ fn asked(kind: Kind) -> &'static str {
         Kind::Nothing => "nothing",
         Kind::One => "one effect",
         Kind::Missing => "one, not looked for",
+        Kind::Outside => "one, in no library",
         Kind::Two => "two effects",
         Kind::Three => "three effects",
     }
@@ -43,18 +44,10 @@ const COLUMNS: [&str; 13] = [
 ];
 
 fn row(tally: &Tally) -> Vec<String> {
-    let noise = match tally.noise_pole {
-        0.0 => "white".into(),
-        pole => format!("pole {pole}"),
-    };
-    let off = match tally.parameter_error {
-        0.0 => String::new(),
-        off => format!(", parameters {:.0} % off", 100.0 * off),
-    };
     vec![
         asked(tally.kind).into(),
         tally.g.to_string(),
-        format!("{} samples, {} dB, {noise}{off}", tally.samples, tally.snr_db),
+        tally.conditions.to_string(),
         tally.cases.to_string(),
         percent(tally.first),
         percent(tally.named),
@@ -80,7 +73,8 @@ impl ExamResult {
         })
     }
 
-    /// Writes `study.json`, `cases.csv` and `report.html`.
+    /// Writes `study.json`, `cases.csv` and `report.html`, which are the same wherever the cases were
+    /// worked off, and `seconds.csv`, which is not.
     ///
     /// # Errors
     ///
@@ -92,38 +86,49 @@ impl ExamResult {
             write_text(&path, &text).map_err(|error| StudyError::write(&path, error))
         };
         put("cases.csv", self.csv())?;
+        put("seconds.csv", self.seconds())?;
         put("report.html", self.html())?;
         write(&folder.join("study.json"), &self.document())
     }
 
     fn csv(&self) -> String {
         let mut text = String::from(
-            "case,system,hidden,g,samples,snr_db,noise_pole,parameter_error,seed,named,exact,found,\
-             set_size,removed,verdict,seconds\n",
+            "case,system,hidden,g,samples,records,snr_db,noise,process_noise,input_noise,onset,\
+             parameter_error,seed,named,exact,found,set_size,removed,verdict\n",
         );
         for m in &self.marks {
             let (c, exact) = (&m.case, m.hits.iter().all(|h| *h == super::Hit::Exact));
+            let at = &c.conditions;
             let removed = m.removed.map_or_else(String::new, |r| r.to_string());
             let _ = writeln!(
                 text,
-                "{},{},{},{},{},{},{},{},{},{},{exact},{},{},{removed},{},{:.2}",
+                "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{exact},{},{},{removed},{}",
                 c.number,
                 m.system,
                 m.hidden.join(" + "),
                 c.g,
-                c.samples,
-                c.snr_db,
-                c.noise_pole,
-                c.parameter_error,
+                at.samples,
+                at.records,
+                at.snr_db,
+                at.noise,
+                at.process_noise,
+                at.input_noise,
+                at.onset,
+                at.parameter_error,
                 c.seed,
                 m.all(),
                 m.found.join(" + "),
                 m.set_size(),
-                m.verdict,
-                m.seconds
+                m.verdict
             );
         }
         text
+    }
+
+    /// How long each case took.
+    fn seconds(&self) -> String {
+        let line = |m: &super::Marks| format!("{},{:.2}\n", m.case.number, m.seconds);
+        "case,seconds\n".to_string() + &self.marks.iter().map(line).collect::<String>()
     }
 
     fn html(&self) -> String {

@@ -4,7 +4,9 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use super::{Case, Exam, Marks};
+use super::marks::removed;
+use super::truth::Whole;
+use super::{Answer, Case, CaseTruth, Exam, Marks};
 use crate::StudyError;
 use crate::diagnose::Diagnosis;
 use crate::job::write;
@@ -13,6 +15,12 @@ use crate::train::Fingerprint;
 use crate::watch::Watch;
 
 impl Exam {
+    /// What all cases have in common.
+    pub(super) fn whole(&self, systems: &[System], seed: u64) -> Result<Whole, StudyError> {
+        let fingerprint = self.fingerprint(systems, seed)?;
+        Ok(Whole { fingerprint, of: self.cases()?.len(), seed })
+    }
+
     /// Tells exams apart that must not be mixed.
     fn fingerprint(&self, systems: &[System], seed: u64) -> Result<u64, StudyError> {
         let text = |value: Result<String, serde_json::Error>| {
@@ -25,6 +33,11 @@ impl Exam {
             print = print.bytes(text(serde_json::to_string(system))?.as_bytes());
         }
         Ok(print.finish())
+    }
+
+    /// Checks that every effect can be where it is to be hidden.
+    pub(super) fn ready(&self, systems: &[System]) -> Result<(), StudyError> {
+        self.systems.iter().zip(systems).try_for_each(|(machine, system)| machine.check(system))
     }
 
     /// Works cases off, each with its marks in `folder/marks`; those whose marks are there
@@ -43,18 +56,16 @@ impl Exam {
         folder: &Path,
         watch: &dyn Watch,
     ) -> Result<usize, StudyError> {
-        for (machine, system) in self.systems.iter().zip(systems) {
-            machine.check(system)?;
-        }
+        self.ready(systems)?;
         let folder = folder.join("marks");
         std::fs::create_dir_all(&folder).map_err(|error| StudyError::write(&folder, error))?;
-        let exam = (self.fingerprint(systems, seed)?, self.cases()?.len());
+        let exam = self.whole(systems, seed)?;
         let mut open = vec![];
         for case in cases {
-            let path = folder.join(format!("case{}.json", case.number));
+            let path = folder.join(format!("{}.json", case.key()));
             if !path.exists() {
                 open.push((case, path));
-            } else if Marks::read(&path)?.fingerprint != exam.0 {
+            } else if Marks::read(&path)?.fingerprint != exam.fingerprint {
                 return Err(StudyError::merge(&path, "the result of another exam"));
             }
         }
@@ -65,7 +76,7 @@ impl Exam {
                 if watch.stopped() {
                     return;
                 }
-                let marks = self.ask(systems, case, seed, exam);
+                let marks = self.ask(systems, case, exam);
                 match marks.and_then(|marks| write(path, &marks).map(|()| marks)) {
                     Ok(marks) => {
                         let count = done.fetch_add(1, Ordering::Relaxed) + 1;
@@ -94,25 +105,18 @@ impl Exam {
     }
 
     /// One case from the hiding to the marks.
-    fn ask(
-        &self,
-        systems: &[System],
-        case: &Case,
-        seed: u64,
-        exam: (u64, usize),
-    ) -> Result<Marks, StudyError> {
+    fn ask(&self, systems: &[System], case: &Case, exam: Whole) -> Result<Marks, StudyError> {
         let machine = &self.systems[case.system];
-        let mut made = machine.make(&systems[case.system], case, seed)?;
-        made.record.source = format!("case {} of the exam", case.number);
-        made.third.source = format!("case {} of the exam, third record", case.number);
-        let mut diagnosis = Diagnosis::of(&made.baseline);
-        if case.kind == super::Kind::Missing {
-            let hidden =
-                case.hidden.iter().map(|&h| machine.hidden[h].placed.effect.typetag_name());
-            diagnosis = diagnosis.without(&hidden.map(String::from).collect::<Vec<_>>());
+        let mut made = machine.make(&systems[case.system], case, exam.seed)?;
+        for (k, record) in made.records.iter_mut().enumerate() {
+            record.source = format!("case {} of the exam, record {}", case.number, k + 1);
         }
-        let finding = diagnosis.run(std::slice::from_ref(&made.record), None, &())?;
-        Marks::of(case, machine, &made, &finding, exam)
+        made.third.source = format!("case {} of the exam, third record", case.number);
+        let truth = CaseTruth::of(case, machine, &made, exam)?;
+        let diagnosis = Diagnosis::of(&made.baseline).without(&truth.excluded());
+        let finding = diagnosis.run(&made.records, None, &())?;
+        let share = removed(&finding.extended, &made.baseline, &made.third)?;
+        Ok(Marks::of(&truth, &Answer::of(case.number, &finding), Some(share)))
     }
 }
 

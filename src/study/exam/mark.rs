@@ -1,0 +1,98 @@
+//! Marks answers of any tool against the truth of an exam that was written.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use super::folder::{CASES, EXAM, TRUTH, Written, sealed};
+use super::marks::removed;
+use super::{Answer, Answers, CaseTruth, ExamResult, Marks};
+use crate::StudyError;
+use crate::data::{Step, Table, Want};
+use crate::file::load;
+
+/// Reads a JSON file.
+fn read<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, StudyError> {
+    let text = std::fs::read_to_string(path).map_err(|error| StudyError::merge(path, error))?;
+    serde_json::from_str(&text).map_err(|error| StudyError::merge(path, error))
+}
+
+impl Written {
+    /// Reads what an exam says of itself.
+    ///
+    /// # Errors
+    ///
+    /// If the folder holds no exam, or one that was not written to its end.
+    pub fn read(folder: &Path) -> Result<Self, StudyError> {
+        read(&folder.join(EXAM))
+    }
+
+    /// Marks answers of a tool: a file, or a folder of files. What is not answered is marked as if
+    /// nothing had been found; it is counted.
+    ///
+    /// # Errors
+    ///
+    /// If the exam is not whole, its truth is not what was sealed, an answer is to no case, or a
+    /// file cannot be read.
+    pub fn mark(&self, folder: &Path, answers: &Path) -> Result<(ExamResult, usize), StudyError> {
+        let mut given: BTreeMap<usize, _> = BTreeMap::new();
+        for (answer, beside) in Answers::read(answers)? {
+            if !(1..=self.cases).contains(&answer.case) {
+                let reason = format!("case {} is none of the {} cases", answer.case, self.cases);
+                return Err(StudyError::merge(answers, reason));
+            }
+            given.insert(answer.case, (answer, beside));
+        }
+        let open = self.cases - given.len();
+        let mut marks = vec![];
+        for seal in &self.seal {
+            let key = format!("case{}", seal.case);
+            let truth_folder = folder.join(TRUTH).join(&key);
+            if sealed(&truth_folder)? != seal.sha256 {
+                let reason = "is not what was sealed when the exam was written";
+                return Err(StudyError::merge(&truth_folder, reason));
+            }
+            let truth: CaseTruth = read(&truth_folder.join("truth.json"))?;
+            let silent = || Answer {
+                case: seal.case,
+                verdict: None,
+                causes: vec![],
+                extended_model: None,
+                gain: None,
+                seconds: 0.0,
+            };
+            let answer = given.remove(&seal.case);
+            let share = match &answer {
+                Some((Answer { extended_model: Some(model), .. }, beside)) => {
+                    let extended = load(&beside.join(model))?;
+                    let baseline = load(&folder.join(CASES).join(&key).join("model.toml"))?;
+                    let third = third(&truth_folder.join("third.csv"), &baseline)?;
+                    Some(removed(&extended, &baseline, &third)?)
+                }
+                _ => None,
+            };
+            let answer = answer.map_or_else(silent, |(answer, _)| answer);
+            marks.push(Marks::of(&truth, &answer, share));
+        }
+        Ok((ExamResult::new(marks)?, open))
+    }
+}
+
+/// The record without noise on which gains are measured.
+fn third(path: &Path, of: &crate::system::System) -> Result<crate::data::Record, StudyError> {
+    let signals = of.signals();
+    let pairs = |signals: &[crate::model::Signal]| {
+        signals.iter().map(|s| (s.name.clone(), s.unit.clone())).collect()
+    };
+    let step = match signals.time.is_continuous() {
+        true => Step::Free { default: of.sampling.sampling_time },
+        false => Step::Fixed(of.sampling_time(None)?),
+    };
+    let want = Want {
+        inputs: pairs(&signals.inputs),
+        outputs: pairs(&signals.outputs),
+        step,
+        outputs_required: true,
+        minimum: 2 * signals.states.len().max(1),
+    };
+    Ok(Table::open(path)?.record_for(&want)?.0)
+}
