@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::finding::{Moved, Track};
 use super::found::Found;
 use super::nuisance::{Key, Nuisance};
 use super::precision::Precision;
 use super::refit::Fitted;
+use super::story::{Moved, Track};
 use crate::model::Signals;
 
 /// Standard errors beyond which a parameter counts as moved.

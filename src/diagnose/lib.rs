@@ -21,17 +21,21 @@ mod curves;
 mod dependence;
 mod diagnosis;
 mod distortion;
+mod doubt;
 mod error;
 mod evidence;
 mod excitation;
 mod faults;
+mod features;
 mod feedback;
 mod finding;
 mod finished;
+mod fitted;
 mod floor;
 mod found;
 mod gain;
 mod grain;
+mod keys;
 mod library;
 mod limits;
 mod measure;
@@ -61,6 +65,7 @@ mod resembles;
 mod resolution;
 mod restart;
 mod ridge;
+mod run;
 mod score;
 mod screen;
 mod searched;
@@ -68,9 +73,12 @@ mod shown;
 mod sketch;
 mod smooth;
 mod spikes;
+mod story;
 mod stretches;
 mod sums;
+mod supposed;
 mod surface;
+mod tell;
 mod teller;
 mod tensor;
 mod together;
@@ -79,7 +87,6 @@ mod withdrawn;
 
 pub use crate::watch::Watch;
 pub use acts::ActsWhere;
-pub use alone::Alone;
 pub use cause::{
     Alternative, Cause, ColumnFault, ExplainedBy, FoundShape, LawPart, MissingForce, Onset, Site,
     Value, Withdrawn, Wording,
@@ -90,10 +97,12 @@ pub use distortion::{AtLines, Distortion, distortion};
 pub use error::DiagnoseError;
 pub use feedback::ClosedLoop;
 pub use finding::{
-    Curve, FalseDiscovery, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack, Ranked,
-    RecordFacts, Scores, Series, Track, Verdict,
+    Alone, Curve, FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts,
+    Scores, Series, Verdict,
 };
+pub use floor::NoiseFloor;
 pub use note::Note;
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
 pub use regime::Regime;
 pub use shown::InRecord;
+pub use story::{Moved, Track};

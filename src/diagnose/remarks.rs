@@ -3,11 +3,12 @@
 use super::candidate::{Candidate, Wire};
 use super::cause::Cause;
 use super::dependence::DEPENDS;
-use super::finding::{NotFound, Track};
+use super::finding::NotFound;
 use super::finished::Finished;
 use super::note::Note;
 use super::plan::natural;
 use super::problem::Part;
+use super::story::Track;
 use super::teller::Teller;
 use crate::statistics::{corrected_score, rms};
 

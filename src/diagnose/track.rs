@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use super::dependence::dependence;
-use super::finding::{Moved, Track};
 use super::finished::{Finished, moved_together};
 use super::found::Found;
 use super::library::Allowed;
@@ -13,6 +12,7 @@ use super::posterior::{self, Searched};
 use super::precision::Precision;
 use super::problem::{Grain, Model, Problem};
 use super::refit::{Fitted, MANY, Refit, refit};
+use super::story::{Moved, Track};
 use crate::watch::Watch;
 
 /// What a search is made of.
