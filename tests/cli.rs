@@ -5,6 +5,7 @@ use std::process::{Command, Output, Stdio};
 
 use serde_json::Value;
 
+mod book;
 mod calls;
 mod linear;
 mod lists;
@@ -18,6 +19,7 @@ mod records;
 mod refusal;
 mod report;
 pub mod schema;
+mod verdicts;
 mod work;
 
 /// A model that takes a moment to simulate.

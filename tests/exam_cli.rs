@@ -108,6 +108,10 @@ fn an_exam_that_is_written_is_marked_as_the_study_marks_it() {
         (&truth["case"]["kind"], &truth["hidden"][0]["effect"]),
         (&json!("outside"), &json!("wavy"))
     );
+    // the machine itself is a model like any other, and makes the third record
+    let files = "--model exam/truth/case4/machine.toml --data exam/truth/case4/third.csv --json";
+    let run: Value = serde_json::from_str(&place.done(&format!("simulate {files}"))).unwrap();
+    assert!(run["metrics"]["y"]["nrmse"].as_f64().unwrap() < 1e-6, "{run}");
     // how sure it was
     place.done("exam calibrate whole --commit 0123abc --out calibration.json");
     let told: Value = serde_json::from_str(&place.read("calibration.json")).unwrap();

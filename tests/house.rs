@@ -265,8 +265,8 @@ fn plug_ins_could_live_elsewhere() {
 #[test]
 fn files_stay_short() {
     let mut long = vec![];
-    for folder in ["src", "plugins", "tests", "examples"] {
-        for path in files(folder, &["rs"]) {
+    for folder in ["src", "plugins", "tests", "examples", "python"] {
+        for path in files(folder, &["rs", "py"]) {
             let longer = LONGER.contains(&path.to_str().unwrap());
             let limit = if longer { 450 } else { 300 };
             let lines = text(&path).lines().count();
@@ -282,8 +282,8 @@ fn files_stay_short() {
 fn no_file_names_a_place_of_one_machine() {
     let places = ["tmp", "work", "root", "home"].map(|name| format!("/{name}/"));
     let mut all = vec![PathBuf::from("README.md"), "Cargo.toml".into(), ".ci/run".into()];
-    for folder in ["src", "plugins", "tests", "examples", "docs"] {
-        all.extend(files(folder, &["rs", "md", "toml", "css", "json"]));
+    for folder in ["src", "plugins", "tests", "examples", "docs", "python"] {
+        all.extend(files(folder, &["rs", "md", "toml", "css", "json", "py", "ipynb"]));
     }
     for path in all {
         for (number, line) in text(&path).lines().enumerate() {

@@ -136,6 +136,20 @@ fn one_interrupt_ends_a_diagnosis_with_what_is_known() {
 }
 
 #[test]
+fn a_check_that_is_interrupted_has_no_verdict() {
+    let place = Place::new("no verdict");
+    let call = "check --model model.toml --data records/est.csv --json -v";
+    let mut working = Working::start(place.call(call));
+    working.wait_for("screening candidates");
+    working.interrupt();
+    let (out, status, said) = working.end();
+    assert_eq!(status, Some(1), "{said}");
+    let document = json(&out);
+    assert!(document["rejected"].is_null() && document["p_value"].is_null(), "{document:#}");
+    assert_eq!(document["interrupted"], true);
+}
+
+#[test]
 fn a_second_interrupt_ends_at_once() {
     let place = Place::new("twice");
     let call = "diagnose --model model.toml --data records/est.csv --out found --json -v";

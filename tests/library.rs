@@ -11,4 +11,5 @@ mod linear;
 mod optimise;
 mod real;
 mod records;
+mod results;
 mod theory;

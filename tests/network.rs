@@ -227,6 +227,10 @@ fn what_is_wrong_with_its_place_is_said_in_the_model_file() {
     // the file
     let absent = text.replace("press.network.json", "pres.network.json");
     refused(&absent, &format!("{own}.file"), "pres.network.json cannot be read");
+    for elsewhere in ["/etc/passwd", "../../press.network.json"] {
+        let text = text.replace("press.network.json", elsewhere);
+        refused(&text, &format!("{own}.file"), "does not stand beside the model file");
+    }
     let both = text.replace("json\" }", "json\", size = 1.0 }");
     refused(&both, &format!("{own}.size"), "both `file` and `size`");
     // in memory there is no folder

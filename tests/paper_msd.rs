@@ -25,11 +25,9 @@ fn near(what: &str, found: f64, wanted: f64, share: f64) {
 }
 
 #[test]
-fn the_baseline_is_as_wrong_as_the_paper_says() {
-    let Some(clean) = read(FOLDER, "test.csv", "y_clean") else {
-        println!("skipped: {FOLDER} is not there");
-        return;
-    };
+#[ignore = "needs ../shared/data: cargo test --workspace -- --ignored shared_data"]
+fn shared_data_the_baseline_is_as_wrong_as_the_paper_says() {
+    let clean = read(FOLDER, "test.csv", "y_clean").unwrap();
     let noisy = read(FOLDER, "test.csv", "y").unwrap();
     let linear = linearised::Linearised::new(Box::new(model(0.05)), None);
     let linear = System::new(linear, sampling());
@@ -85,12 +83,9 @@ fn states_near(what: &str, found: &[StateError], wanted: [f64; 4]) {
 }
 
 #[test]
-fn initialisers_are_as_good_as_their_peers() {
-    let records = ["train.csv", "val.csv"].map(|file| read(FOLDER, file, "y"));
-    let [Some(train), Some(validation)] = records else {
-        println!("skipped: {FOLDER} is not there");
-        return;
-    };
+#[ignore = "needs ../shared/data: cargo test --workspace -- --ignored shared_data"]
+fn shared_data_initialisers_are_as_good_as_their_peers() {
+    let [train, validation] = ["train.csv", "val.csv"].map(|file| read(FOLDER, file, "y").unwrap());
     let baseline_system = system(0.05);
     let baseline = Baseline::new(&baseline_system, &train).unwrap();
     let validation = Baseline::new(&baseline_system, &validation).unwrap();

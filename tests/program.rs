@@ -7,5 +7,6 @@ mod exam_cli;
 mod exam_machines;
 mod interrupts;
 mod pendulum;
+mod rehearse;
 mod several_causes;
 mod training_cli;

@@ -137,17 +137,14 @@ proptest! {
     }
 }
 
-/// A file of the shared data, or none where the data are not at hand.
-fn shared(name: &str) -> Option<PathBuf> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
-    if !path.exists() {
-        println!("skipped: {} is not here", path.display());
-    }
-    path.exists().then_some(path)
+/// A file or folder of the data beside the project.
+fn shared(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name)
 }
 
 #[test]
-fn real_files_are_read() {
+#[ignore = "needs ../shared/data: cargo test --workspace -- --ignored shared_data"]
+fn shared_data_real_files_are_read() {
     let volts = want(&[("input", "V")], &[("output", "V")]);
     for (name, samples, step, want) in [
         ("silverbox/train_multisine.csv", 65_062, 0.001_638_4, &volts),
@@ -160,7 +157,7 @@ fn real_files_are_read() {
             &want(&[("force", "N")], &[("p", "m")]),
         ),
     ] {
-        let Some(path) = shared(name) else { continue };
+        let path = shared(name);
         let want = Want { step: Step::Free { default: None }, ..want.clone() };
         let (record, remarks) = read_for(&path, &want).unwrap();
         assert_eq!(record.len(), samples, "{name}");
@@ -175,26 +172,25 @@ fn real_files_are_read() {
 }
 
 #[test]
-fn periods_of_real_files_are_found() {
+#[ignore = "needs ../shared/data: cargo test --workspace -- --ignored shared_data"]
+fn shared_data_periods_of_real_files_are_found() {
     for (name, input, samples, count) in
         [("bouc_wen/est_multisine.csv", "u", 8192, 4), ("msd_paper/train.csv", "u", 10_000, 2)]
     {
-        let Some(path) = shared(name) else { continue };
+        let path = shared(name);
         let periods = Record::csv(path).unwrap().pick(&[input], &["y"]).unwrap().periods();
         assert_eq!(periods.map(|p| (p.samples, p.count)), Some((samples, count)), "{name}");
     }
-    if let Some(path) = shared("cascaded_tanks/train.csv") {
-        assert_eq!(Record::csv(path).unwrap().u_and_y().unwrap().periods(), None);
-    }
+    let path = shared("cascaded_tanks/train.csv");
+    assert_eq!(Record::csv(path).unwrap().u_and_y().unwrap().periods(), None);
 }
 
 #[test]
-fn every_regular_file_of_the_shared_data_has_a_clock() {
-    let Some(folder) = shared("silverbox").and_then(|path| path.parent().map(Path::to_owned))
-    else {
-        return;
-    };
-    for set in std::fs::read_dir(folder).unwrap().flatten().filter(|entry| entry.path().is_dir()) {
+#[ignore = "needs ../shared/data: cargo test --workspace -- --ignored shared_data"]
+fn shared_data_every_regular_file_has_a_clock() {
+    for set in
+        std::fs::read_dir(shared("")).unwrap().flatten().filter(|entry| entry.path().is_dir())
+    {
         for file in std::fs::read_dir(set.path()).unwrap().flatten() {
             let name = file.path().display().to_string();
             if !name.ends_with(".csv") && !name.ends_with(".csv.gz") {

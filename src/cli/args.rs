@@ -216,6 +216,10 @@ pub struct Demo {
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
     pub out: PathBuf,
+    /// Simulates what was found so many times, diagnoses each, and says how often such a record
+    /// would mislead [default: not at all]
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub rehearse: usize,
 }
 
 #[derive(Debug, Clone, Arguments)]

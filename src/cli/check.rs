@@ -1,7 +1,5 @@
 //! `lacuna check`.
 
-use serde_json::json;
-
 use super::args::Check;
 use super::console::Console;
 use super::failure::Failure;
@@ -9,7 +7,7 @@ use super::input;
 use super::outputs;
 use lacuna::diagnose::Diagnosis;
 use lacuna::digits::number;
-use lacuna::report::{cause_document, sentences};
+use lacuna::report::{documents, sentences};
 
 /// Exit status where somebody stopped the check before it had a verdict.
 const NO_VERDICT: u8 = 1;
@@ -39,25 +37,11 @@ pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
         }
     });
     let first = checked.first_cause.as_ref();
-    let document_of = |cause| cause_document(cause).map_err(Failure::unwritable);
     let of_the_model = first.filter(|cause| !checked.data_faults.contains(cause));
     for cause in checked.data_faults.iter().chain(of_the_model) {
         look.result(&sentences::cause(cause));
     }
-    let faults: Vec<_> =
-        checked.data_faults.iter().map(document_of).collect::<Result<_, Failure>>()?;
-    let mut document = json!({
-        "schema": 1,
-        "rejected": rejected,
-        "p_value": checked.p_value,
-        "level": args.level,
-        "first_cause": first.map(document_of).transpose()?,
-        "data_faults": faults,
-        "data_rejected": data_rejected,
-    });
-    if checked.interrupted {
-        document["interrupted"] = json!(true);
-    }
+    let document = documents::checked(&checked, args.level).map_err(Failure::unwritable)?;
     look.document(&document);
     Ok(match rejected {
         None => NO_VERDICT,

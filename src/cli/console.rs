@@ -4,6 +4,9 @@
 //! longer than ten seconds says where its time goes: on a terminal in the bar, else in a line
 //! every ten seconds, and at the end by the three steps that took longest.
 
+mod interrupts;
+
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,7 +15,6 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::Common;
-use super::failure::Failure;
 use lacuna::diagnose::Watch;
 
 static STOPPED: AtomicBool = AtomicBool::new(false);
@@ -99,14 +101,14 @@ impl Console {
     /// Text for people, beside the result.
     pub fn say(&self, text: &str) {
         if !self.quiet {
-            self.bar.suspend(|| line(text));
+            self.bar.suspend(|| line(&harmless(text)));
         }
     }
 
     /// The result for people: on stdout, also when quiet, unless a program listens.
     pub fn result(&self, text: &str) {
         if !self.json {
-            self.bar.suspend(|| print(&format!("{text}\n")));
+            self.bar.suspend(|| print(&format!("{}\n", harmless(text))));
         }
     }
 
@@ -127,12 +129,16 @@ impl Console {
     /// The sentence that matters.
     pub fn headline(&self, text: &str) {
         let bold = std::io::stdout().is_terminal() && !no_color();
-        if bold { self.result(&format!("\x1b[1m{text}\x1b[0m")) } else { self.result(text) }
+        let text = harmless(text);
+        let text = if bold { format!("\x1b[1m{text}\x1b[0m") } else { text.into_owned() };
+        if !self.json {
+            self.bar.suspend(|| print(&format!("{text}\n")));
+        }
     }
 
     pub fn error(&self, text: &str) {
         let lead = if self.lively { "\x1b[1;31merror\x1b[0m" } else { "error" };
-        line(&format!("{lead}: {text}"));
+        line(&format!("{lead}: {}", harmless(text)));
     }
 
     /// One JSON document, if one is wanted.
@@ -168,21 +174,6 @@ impl Console {
         if let Ok(mut course) = self.course.lock() {
             course.span = Some((from, to));
         }
-    }
-
-    /// Lets the first Ctrl-C ask for an end and the second one make it.
-    pub fn hear_interrupts(&self) -> Result<(), Failure> {
-        if self.lively && !self.quiet {
-            self.bar.set_draw_target(ProgressDrawTarget::stderr_with_hz(8));
-        }
-        let handler = || {
-            if STOPPED.swap(true, Ordering::Relaxed) {
-                std::process::exit(130);
-            }
-            line("stopping with what is known; Ctrl-C again ends at once");
-        };
-        ctrlc::set_handler(handler)
-            .map_err(|error| Failure::work(format!("Ctrl-C cannot be listened to: {error}")))
     }
 }
 
@@ -226,6 +217,20 @@ impl Watch for Console {
 
 fn no_color() -> bool {
     std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
+}
+
+/// Text whose control characters are written out: names of a file's columns may hold sequences
+/// that a terminal obeys (ECMA-48).
+fn harmless(text: &str) -> Cow<'_, str> {
+    let obeyed = |c: char| c.is_control() && c != '\n' && c != '\t';
+    if !text.contains(obeyed) {
+        return text.into();
+    }
+    let written = text.chars().map(|c| match obeyed(c) {
+        true => c.escape_default().to_string(),
+        false => c.to_string(),
+    });
+    written.collect::<String>().into()
 }
 
 /// A line on stderr, where there is one.

@@ -4,9 +4,10 @@ use super::args::Demo;
 use super::console::Console;
 use super::diagnose::{FILES, Results, look_for};
 use super::failure::Failure;
-use super::{input, outputs, provenance};
+use super::{outputs, provenance};
 use lacuna::data::{Record, Table};
 use lacuna::diagnose::Diagnosis;
+use lacuna::evaluate::want;
 use lacuna::file::{Format, parse};
 
 /// The model: two masses, without what is hidden in the record.
@@ -18,7 +19,7 @@ const TEST: &[u8] = include_bytes!("demo/test.csv.gz");
 pub fn run(args: &Demo, seed: u64, look: &Console) -> Result<u8, Failure> {
     outputs::check(&[], &outputs::within(&args.out, &FILES), look)?;
     let system = parse(MODEL, "demo/model.toml", Format::Toml)?;
-    let want = input::want(&system)?;
+    let want = want(&system)?;
     let read = |bytes: &[u8], name: &str| -> Result<Record, Failure> {
         Ok(Table::read(bytes, name)?.record_for(&want)?.0)
     };
@@ -31,5 +32,7 @@ pub fn run(args: &Demo, seed: u64, look: &Console) -> Result<u8, Failure> {
         .embedded("data", "demo/est.csv.gz", EST)
         .embedded("test", "demo/test.csv.gz", TEST);
     let title = "a mass-spring-damper";
-    look_for(&diagnosis, &records, Some(&test), Results { title, out: &args.out, from }, look)
+    let rehearse = (args.rehearse, (1, 1));
+    let results = Results { title, out: &args.out, from, rehearse };
+    look_for(&diagnosis, &records, Some(&test), results, look)
 }

@@ -9,11 +9,12 @@ use super::failure::Failure;
 use super::no_model::Asked;
 use super::outputs::{self, cannot_write};
 use super::{input, provenance, reported};
-use lacuna::data::{DataError, Record};
-use lacuna::diagnose::{Diagnosis, Finding, Outlook, Planner, Watch};
-use lacuna::estimate::linear_with;
+use lacuna::data::Record;
+use lacuna::diagnose::{Diagnosis, Finding, Planner, Watch};
+use lacuna::estimate::linear_baseline;
 use lacuna::file::{save_with, write_text};
 use lacuna::report::{Beside, Document, Provenance, Report, sentences};
+use lacuna::study::{Rehearsal, Rehearsed};
 use lacuna::system::System;
 
 /// Files that a diagnosis leaves in its folder.
@@ -29,6 +30,8 @@ pub struct Results<'a> {
     pub title: &'a str,
     pub out: &'a Path,
     pub from: Provenance,
+    /// How many rehearsals, and which share of them.
+    pub rehearse: (usize, (usize, usize)),
 }
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
@@ -87,23 +90,20 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
         Some(path) => path.display().to_string(),
         None => "a linear model of the record".into(),
     };
-    let results = Results { title: &title, out: &args.out, from };
+    let rehearse = (args.rehearse, args.shard.unwrap_or((1, 1)));
+    let results = Results { title: &title, out: &args.out, from, rehearse };
     finish(&diagnosis, &records, test.as_ref(), results, look)
 }
 
-/// A linear model of the part of the records that the diagnosis fits to: the rest, by which causes
-/// are chosen and scored, stays unseen.
+/// The linear model that is diagnosed where there is no other; what it is, is said.
 fn linear_of(
     records: &[Record],
     has_test: bool,
     out: &Path,
     look: &Console,
 ) -> Result<System, Failure> {
-    let share = if has_test { 0.7 } else { 0.6 };
-    let first = |record: &Record| Ok(record.split(&[share])?.remove(0));
-    let parts: Vec<Record> = records.iter().map(first).collect::<Result<_, DataError>>()?;
     look.part(0.0, 0.2);
-    let found = linear_with(&parts, None, look)?;
+    let (found, share) = linear_baseline(records, has_test, look)?;
     look.part(0.2, 1.0);
     let header = ["Written by `lacuna diagnose`: a linear model of the record.".to_string()];
     save_with(&found.system, &out.join(LINEAR), &header)?;
@@ -117,27 +117,6 @@ fn linear_of(
         look.result(remark);
     }
     Ok(found.system)
-}
-
-/// The experiments that would tell look-alikes apart, where there are some.
-fn outlook(
-    finding: &Finding,
-    system: &System,
-    records: &[Record],
-    look: &Console,
-) -> Option<Outlook> {
-    let mut effects = vec![];
-    for cause in finding.causes.iter().filter(|cause| !cause.indistinguishable.is_empty()) {
-        effects.push(cause.effect.clone());
-        effects.extend(cause.indistinguishable.iter().map(|other| other.effect.clone()));
-    }
-    if effects.is_empty() || look.stopped() {
-        return None;
-    }
-    effects.sort();
-    effects.dedup();
-    // a report without it is a report all the same
-    Planner::of(system).only(&effects).run(records, look).ok()
 }
 
 /// Runs a diagnosis, writes its files and says what it found.
@@ -162,9 +141,14 @@ fn finish(
     results: Results<'_>,
     look: &Console,
 ) -> Result<u8, Failure> {
-    let Results { title, out, from } = results;
+    let Results { title, out, from, rehearse } = results;
+    if rehearse.0 > 0 {
+        look.part(0.0, 0.05);
+    }
     let finding = diagnosis.run(records, test, look)?;
-    let outlook = outlook(&finding, diagnosis.system(), records, look);
+    let outlook = Planner::for_look_alikes(&finding, diagnosis.system(), records, look);
+    look.part(0.05, 1.0);
+    let rehearsed = rehearsed(diagnosis, &finding, records, (rehearse, from.seed), out, look)?;
     look.clear();
     let headline = sentences::headline(&finding);
     let mut header = vec!["Written by `lacuna diagnose`.".to_string()];
@@ -174,24 +158,53 @@ fn finish(
     if let Some(outlook) = &outlook {
         report = report.outlook(outlook);
     }
-    reported::write(&report.page(), out, PAGE)?;
+    let mut page = report.page();
     let beside = Beside { extended_model: MODEL, report: PAGE };
-    let document = Document::of(&finding, beside, &from).text().map_err(Failure::unwritable)?;
+    let mut document = Document::of(&finding, beside, &from);
+    if let Some(rehearsed) = &rehearsed {
+        rehearsed.section(&mut page);
+        document = document.with("rehearsal", rehearsed).map_err(Failure::unwritable)?;
+    }
+    reported::write(&page, out, PAGE)?;
+    let document = document.text().map_err(Failure::unwritable)?;
     let json = out.join(DOCUMENT);
     write_text(&json, &document).map_err(|error| cannot_write(&json, &error))?;
-    tell(&finding, out, look);
+    tell(&finding, rehearsed.as_ref(), out, look);
     if look.json {
         print(&document);
     }
     Ok(0)
 }
 
-fn tell(finding: &Finding, out: &Path, look: &Console) {
+/// Rehearses what was found, where that is asked for.
+fn rehearsed(
+    diagnosis: &Diagnosis<'_>,
+    finding: &Finding,
+    records: &[Record],
+    ((count, shard), seed): ((usize, (usize, usize)), u64),
+    out: &Path,
+    look: &Console,
+) -> Result<Option<Rehearsed>, Failure> {
+    if count == 0 || look.stopped() {
+        return Ok(None);
+    }
+    let rehearsal = Rehearsal::of(diagnosis, finding, records, seed)?;
+    let done = rehearsal.run(count, shard, out, look)?;
+    if done < count {
+        look.say(&format!(
+            "{done} of {count} rehearsals are done; the same call without --shard does the rest."
+        ));
+    }
+    Ok(Some(rehearsal.told(count, out)?))
+}
+
+fn tell(finding: &Finding, rehearsed: Option<&Rehearsed>, out: &Path, look: &Console) {
     if finding.interrupted {
         look.result("Interrupted: this is what was known.");
     }
     look.headline(&sentences::headline(finding));
-    for line in sentences::details(finding) {
+    let rehearsed = rehearsed.map(Rehearsed::sentences).unwrap_or_default();
+    for line in sentences::details(finding).into_iter().chain(rehearsed) {
         look.result(&line);
     }
     look.introduce(&format!(

@@ -1,7 +1,5 @@
 //! `lacuna estimate`.
 
-use serde_json::json;
-
 use super::args::Estimate as Args;
 use super::console::Console;
 use super::failure::Failure;
@@ -12,7 +10,7 @@ use lacuna::digits::number;
 use lacuna::estimate::{Estimated, estimate_by, estimate_with};
 use lacuna::file::{Document, Format, save_with};
 use lacuna::optimise::Named;
-use lacuna::report::{cause_document, sentences};
+use lacuna::report::{documents, sentences};
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     outputs::distinct(&args.data, &[])?;
@@ -54,24 +52,9 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     let (before, after) = estimate.nrmse;
     look.result(&format!("NRMSE {before:.4} before, {after:.4} after"));
     look.say(&format!("Wrote {}", args.out.display()));
-    let mut document = json!({
-        "schema": 1,
-        "parameters": estimate.parameters,
-        "undetermined": estimate.undetermined,
-        "nrmse": { "before": before, "after": after },
-        "model": args.out,
-    });
-    if !faults.is_empty() {
-        let faults = faults.iter().map(cause_document).collect::<Result<Vec<_>, _>>();
-        document["data_faults"] = json!(faults.map_err(Failure::unwritable)?);
-    }
-    if let Some(length) = estimate.stretch {
-        document["stretch"] = json!(length);
-    }
-    if estimate.interrupted {
-        document["interrupted"] = json!(true);
-    }
-    look.document(&document);
+    let file = args.out.display().to_string();
+    let document = documents::estimated(&estimate, Some(&file), &faults);
+    look.document(&document.map_err(Failure::unwritable)?);
     Ok(0)
 }
 

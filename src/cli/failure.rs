@@ -1,5 +1,6 @@
 //! Errors as a person or a program reads them.
 
+use std::path::Path;
 use std::process::ExitCode;
 
 use serde_json::json;
@@ -11,7 +12,7 @@ use lacuna::estimate::LinearError;
 use lacuna::evaluate::EvaluateError;
 use lacuna::export::ExportError;
 use lacuna::fault::{Explain, Kind, Place};
-use lacuna::file::FileError;
+use lacuna::file::{Document, FileError};
 use lacuna::lfr::LfrError;
 use lacuna::likelihood::LikelihoodError;
 use lacuna::study::StudyError;
@@ -76,6 +77,30 @@ impl Failure {
             place: error.place(),
             hint: error.hint(),
         }
+    }
+
+    /// The same, laid at the door of a configuration file, where nothing else is named: a setting
+    /// knows its own key, not the file that it was read from. `other` is what a key is called
+    /// there.
+    pub fn in_file(mut self, path: &Path, document: &Document, other: [&str; 2]) -> Self {
+        if self.kind != Kind::Input || self.place.file.is_some() {
+            return self;
+        }
+        let key = self.place.key.as_ref().map(|key| key.replacen(other[0], other[1], 1));
+        let lead = self.place.lead();
+        let found = key.as_deref().and_then(|key| document.spot_ending(key));
+        let place = found.map_or_else(
+            || Place { file: Some(path.display().to_string()), ..self.place.clone() },
+            |spot| spot.place,
+        );
+        let said = self.message.strip_prefix(&lead).unwrap_or(&self.message);
+        self.message = format!("{}{said}", place.lead());
+        self.pretty = match &self.hint {
+            Some(hint) => format!("{}\n  try: {hint}", self.message),
+            None => self.message.clone(),
+        };
+        self.place = place;
+        self
     }
 
     /// Shows it and gives the exit status.

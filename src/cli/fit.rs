@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
-use serde_json::{Map, Value, json};
+use serde_json::json;
 
 use super::args::Fit as Args;
 use super::console::Console;
@@ -18,9 +18,10 @@ use lacuna::digits::number;
 use lacuna::evaluate::{Init, Metrics, Simulation};
 use lacuna::file::{Document, save_with, write_text};
 use lacuna::lfr::AugmentedModel;
+use lacuna::report::documents::{self, Fitted, fitted};
 use lacuna::report::{Shown, TrainingReport};
 use lacuna::system::System;
-use lacuna::train::{Ablation, Checkpoint, Ended, Epoch, Fit, Recipe, Run, ablate, warnings};
+use lacuna::train::{Ablation, Checkpoint, Ended, Epoch, Fit, Recipe, ablate, warnings};
 
 use progress::{Following, Progress};
 
@@ -69,7 +70,9 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let available = || std::thread::available_parallelism().map_or(1, usize::from);
     recipe.training.threads = threads.unwrap_or_else(available);
     look.hear_interrupts()?;
-    let (start, started) = recipe.start(&system, &records, recipe.training.seed)?;
+    let located = |error| Failure::from(error).in_file(&args.config, &document, [""; 2]);
+    let begun = recipe.start(&system, &records, recipe.training.seed);
+    let (start, started) = begun.map_err(located)?;
     // what cannot be saved is better known before the work than after it
     AugmentedModel::new(start.model.clone()).into_system()?;
     look.say(&started.to_string());
@@ -138,36 +141,11 @@ impl Done<'_> {
         let page = out.join(PAGE);
         report.write(&page).map_err(|error| cannot_write(&page, &error))?;
         let scores = match (shown, &run) {
-            (Some(record), Some(run)) => self.scores(record, &baseline, run),
+            (Some(record), Some(run)) => documents::scores(record, self.want, &baseline, run),
             _ => vec![],
         };
         self.tell(&scores, is_test, look);
         Ok(0)
-    }
-
-    /// Baseline and trained model on a record, output by output, over the samples that the
-    /// trained model simulates.
-    fn scores(
-        &self,
-        record: &Record,
-        baseline: &[Vec<f64>],
-        run: &Run,
-    ) -> Vec<[Option<Metrics>; 2]> {
-        let each = self.want.iter().enumerate().map(|(o, (name, _))| {
-            let named = record.outputs.iter().find(|signal| signal.name == *name);
-            let measured = named.or(record.outputs.get(o)).map(|signal| &signal.values[..]);
-            let of = |values: Option<&Vec<f64>>| {
-                let (values, measured) = (values?, measured?);
-                let trained = &run.outputs[o];
-                let seen: Vec<usize> = (0..measured.len())
-                    .filter(|&k| !measured[k].is_nan() && !trained[k].is_nan())
-                    .collect();
-                let pick = |from: &[f64]| seen.iter().map(|&k| from[k]).collect::<Vec<_>>();
-                Metrics::of(&pick(measured), &pick(values))
-            };
-            [of(baseline.get(o)), of(run.outputs.get(o))]
-        });
-        each.collect()
     }
 
     fn tell(&self, scores: &[[Option<Metrics>; 2]], is_test: bool, look: &Console) {
@@ -177,7 +155,6 @@ impl Done<'_> {
             look.result("Interrupted: this is the best model so far; the same call goes on.");
         }
         let which = if is_test { "test" } else { "validation" };
-        let (mut before, mut after) = (Map::new(), Map::new());
         for ((name, unit), [baseline, trained]) in self.want.iter().zip(scores) {
             if let (Some(baseline), Some(trained)) = (baseline, trained) {
                 look.headline(&format!(
@@ -187,8 +164,6 @@ impl Done<'_> {
                     fit.epoch
                 ));
             }
-            before.insert(name.clone(), json!(baseline));
-            after.insert(name.clone(), json!(trained));
         }
         if fit.rollbacks > 0 {
             look.result(&format!("{} steps led nowhere and were taken back.", fit.rollbacks));
@@ -197,26 +172,10 @@ impl Done<'_> {
             look.result(&text);
         }
         look.say(&format!("Wrote {} into {}", FILES.join(", "), out.display()));
-        let last = fit.history.iter().find(|epoch| epoch.epoch == fit.epoch);
-        let mut document = json!({
-            "schema": 1,
-            "epochs": fit.history.len() - 1,
-            "best_epoch": fit.epoch,
-            "ended": fit.ended,
-            "rollbacks": fit.rollbacks,
-            "resumed_at": fit.resumed,
-            "parts": self.parts,
-            "warnings": warnings(fit),
-            "validation": last.and_then(|epoch| epoch.score.as_ref()),
-            "before": { which: Value::Object(before) },
-            "after": { which: Value::Object(after) },
-            "model": "model.toml",
-            "weights": "weights.json",
-            "history": "history.csv",
-            "report": "report.html",
-        });
-        if interrupted {
-            document["interrupted"] = json!(true);
+        let (parts, outputs) = (self.parts, self.want);
+        let mut document = fitted(&Fitted { fit, parts, outputs, scores, is_test });
+        for (key, name) in ["model", "weights", "history", "report"].iter().zip(FILES) {
+            document[*key] = json!(name);
         }
         look.document(&document);
     }

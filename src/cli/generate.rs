@@ -17,11 +17,15 @@ use lacuna::study::Generate;
 const FILES: [&str; 3] = ["est.csv", "test.csv", "truth.json"];
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
-    let how: Generate = Document::load(&args.config)?.read()?;
+    let config = Document::load(&args.config)?;
+    let how: Generate = config.read()?;
     let beside = args.config.parent().unwrap_or(Path::new("")).join(&how.model);
     outputs::check(&[&args.config, &beside], &outputs::within(&args.out, &FILES), look)?;
     let system = load(&beside)?;
-    let made = how.make(&system, seed)?;
+    // what is hidden counts behind the effects that the model has
+    let hidden = if system.effects.is_empty() { ["effects[", "hidden["] } else { [""; 2] };
+    let located = |error| Failure::from(error).in_file(&args.config, &config, hidden);
+    let made = how.make(&system, seed).map_err(located)?;
     fs::create_dir_all(&args.out).map_err(|error| cannot_write(&args.out, &error))?;
     let mut sums = Map::new();
     for (name, record) in [("est.csv", &made.est), ("test.csv", &made.test)] {

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use super::args::Columns;
 use super::console::Console;
 use super::failure::Failure;
-use lacuna::data::{DataError, Record, Remark, Step, Table, Want};
-use lacuna::evaluate::Init;
+use lacuna::data::{DataError, Record, Remark, Table, Want};
+use lacuna::evaluate::{Init, want};
 use lacuna::fault::Place;
 use lacuna::file::load;
 use lacuna::system::System;
@@ -16,26 +16,6 @@ pub fn model(path: &Path) -> Result<(System, Want), Failure> {
     let system = load(path)?;
     let want = want(&system)?;
     Ok((system, want))
-}
-
-/// What a system wants of a record.
-pub fn want(system: &System) -> Result<Want, Failure> {
-    let signals = system.signals();
-    let pairs = |signals: &[lacuna::model::Signal]| {
-        signals.iter().map(|s| (s.name.clone(), s.unit.clone())).collect()
-    };
-    let step = match (signals.time.is_continuous(), system.sampling.sampling_time) {
-        (true, default) => Step::Free { default },
-        (false, Some(step)) => Step::Fixed(step),
-        (false, None) => Step::Fixed(system.sampling_time(None)?),
-    };
-    Ok(Want {
-        inputs: pairs(&signals.inputs),
-        outputs: pairs(&signals.outputs),
-        step,
-        outputs_required: true,
-        minimum: 2 * signals.states.len().max(1),
-    })
 }
 
 /// The tables in a file; `-` is the standard input.
@@ -112,21 +92,14 @@ pub fn keep_repaired(
     Ok(())
 }
 
-/// A record that need not hold outputs. A file with columns left over lacks none on purpose.
+/// A record that need not hold outputs.
 pub fn record_to_simulate(
     path: &Path,
     want: &Want,
     columns: &Columns,
     look: &Console,
 ) -> Result<Record, Failure> {
-    let (table, reading) = (table(path)?, columns.reading());
-    let free = Want { outputs_required: !reading.outputs.is_empty(), ..want.clone() };
-    let (record, remarks) = table.record_by(&free, &reading)?;
-    let absent = remarks.iter().any(|r| matches!(r, Remark::AbsentOutputs { .. }));
-    let extra = remarks.iter().any(|r| matches!(r, Remark::ExtraColumns { .. }));
-    if absent && extra && reading.inputs.is_empty() {
-        table.record_by(want, &reading)?;
-    }
+    let (record, remarks) = table(path)?.record_to_simulate(want, &columns.reading())?;
     tell(path, &remarks, look);
     Ok(record)
 }

@@ -27,6 +27,7 @@ mod no_model;
 mod outputs;
 mod plan;
 mod provenance;
+mod reference;
 mod reported;
 mod simulate;
 mod study;

@@ -1,7 +1,5 @@
 //! `lacuna estimate --lti`.
 
-use serde_json::json;
-
 use super::args::Estimate as Args;
 use super::console::Console;
 use super::failure::Failure;
@@ -10,6 +8,7 @@ use super::no_model::Asked;
 use lacuna::digits::number;
 use lacuna::estimate::{LinearEstimate, LinearParameter, Mode, linear_with};
 use lacuna::file::save_with;
+use lacuna::report::documents;
 
 pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     input::writable(&args.out)?;
@@ -22,22 +21,8 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     save_with(&found.system, &args.out, &["Written by `lacuna estimate --lti`.".into()])?;
     tell(&found, look);
     look.say(&format!("Wrote {}", args.out.display()));
-    let (before, after) = found.nrmse;
-    let mut document = json!({
-        "schema": 1,
-        "order": found.order,
-        "singular_values": found.singular_values,
-        "noise_edge": found.edge,
-        "modes": found.modes,
-        "parameters": found.parameters,
-        "nrmse": { "before": before, "after": after },
-        "remarks": found.remarks,
-        "model": args.out,
-    });
-    if found.interrupted {
-        document["interrupted"] = json!(true);
-    }
-    look.document(&document);
+    let file = args.out.display().to_string();
+    look.document(&documents::linear(&found, Some(&file)));
     Ok(0)
 }
 

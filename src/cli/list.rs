@@ -26,6 +26,13 @@ fn named(signals: &[Signal]) -> Value {
 }
 
 pub fn models(look: &Console) -> Result<u8, Failure> {
+    let (document, text) = all_models();
+    show(look, &document, &text);
+    Ok(0)
+}
+
+/// All models as a document and as text.
+pub fn all_models() -> (Value, String) {
     let (mut all, mut text) = (vec![], String::new());
     for card in register::models() {
         let PlugIn::Model { example } = card.plug_in else { continue };
@@ -68,11 +75,17 @@ pub fn models(look: &Console) -> Result<u8, Failure> {
             }
         }
     }
-    show(look, &json!({ "schema": 1, "models": all }), &text);
-    Ok(0)
+    (json!({ "schema": 1, "models": all }), text)
 }
 
 pub fn effects(look: &Console) -> Result<u8, Failure> {
+    let (document, text) = all_effects();
+    show(look, &document, &text);
+    Ok(0)
+}
+
+/// All effects as a document and as text.
+pub fn all_effects() -> (Value, String) {
     let (mut all, mut text) = (vec![], String::new());
     for (card, effect) in register::effects() {
         let own = effect.card();
@@ -104,8 +117,7 @@ pub fn effects(look: &Console) -> Result<u8, Failure> {
             text += &format!("{:20}   of {needs}; parameters: {}\n", "", words.join(", "));
         }
     }
-    show(look, &json!({ "schema": 1, "effects": all }), &text);
-    Ok(0)
+    (json!({ "schema": 1, "effects": all }), text)
 }
 
 pub fn completions(shell: clap_complete::Shell, look: &Console) -> Result<u8, Failure> {

@@ -5,14 +5,14 @@ use serde_json::json;
 use super::args::Look as Args;
 use super::console::Console;
 use super::failure::Failure;
-use super::no_model::{Asked, by_letter};
+use super::no_model::Asked;
 use super::outputs::{self, cannot_write};
 use super::{input, missing};
-use lacuna::data::Table;
 use lacuna::diagnose::{AtLines, Distortion, distortion};
 use lacuna::digits::number;
 use lacuna::file::write_text;
 use lacuna::look::Look;
+use lacuna::report::documents::looked;
 
 /// The page of a look.
 const PAGE: &str = "look.html";
@@ -26,10 +26,8 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     let asked = Asked { columns: &args.columns, step: args.sampling_time, order: None };
     let mut records = vec![];
     for path in &args.data {
-        for mut table in input::tables(path)? {
-            table.rename(&args.columns.rename)?;
-            let (drives, rest) = roles(&table, args);
-            let (record, remarks) = asked.of(&table, &drives, &rest)?;
+        for table in input::tables(path)? {
+            let (record, remarks) = asked.record_to_look_at(table)?;
             input::tell(path, &remarks, look);
             pages.push(if pages.is_empty() {
                 PAGE.into()
@@ -61,10 +59,8 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         let path = args.out.join(page);
         write_text(&path, &found.page(&record.source))
             .map_err(|error| cannot_write(&path, &error))?;
-        let mut document = serde_json::to_value(&found).map_err(Failure::unwritable)?;
-        document["distortion"] = json!(distorted);
-        document["page"] = json!(path);
-        documents.push(document);
+        let document = looked(&found, &distorted, Some(&path.display().to_string()));
+        documents.push(document.map_err(Failure::unwritable)?);
     }
     look.introduce(&format!("Wrote {} into {}", pages.join(", "), args.out.display()));
     look.document(&json!({ "schema": 1, "records": documents }));
@@ -86,28 +82,4 @@ fn parity(name: &str, found: &Distortion) -> String {
     format!(
         "{name}: distortion at lines that the inputs leave empty, beside {excited} rms at the others: {odd}, {even}"
     )
-}
-
-/// The columns that drive, and the others: those called u, u1.. drive where none is named, and
-/// all other columns of numbers are measured.
-fn roles(table: &Table, args: &Args) -> (Vec<String>, Vec<String>) {
-    let columns = &args.columns;
-    let named = |given: &[String], letter| match given {
-        [] => by_letter(table, letter),
-        _ => given.to_vec(),
-    };
-    let drives = named(&columns.inputs, 'u');
-    let measured = named(&columns.outputs, 'y');
-    if !measured.is_empty() {
-        return (drives, measured);
-    }
-    let free = |name: &&str| {
-        let is_clock = name.eq_ignore_ascii_case("time");
-        !name.is_empty()
-            && !is_clock
-            && !drives.iter().any(|d| d == name)
-            && table.values(name).is_ok()
-    };
-    let rest = table.names().into_iter().filter(free).map(str::to_string).collect();
-    (drives, rest)
 }

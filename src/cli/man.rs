@@ -7,11 +7,22 @@ use super::args::{Args, Man};
 use super::console::{Console, print};
 use super::failure::Failure;
 use super::outputs::cannot_write;
+use super::reference;
+use lacuna::file::write_text;
 
 pub fn run(args: &Man, look: &Console) -> Result<u8, Failure> {
     let command = Args::command();
     if let Some(folder) = &args.out {
         std::fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))?;
+        if args.markdown {
+            for (name, text) in reference::pages(command) {
+                let path = folder.join(name);
+                write_text(&path, &text).map_err(|error| cannot_write(&path, &error))?;
+            }
+            look.introduce(&format!("Wrote the reference into {}", folder.display()));
+            look.document(&json!({ "schema": 1, "folder": folder }));
+            return Ok(0);
+        }
         clap_mangen::generate_to(command, folder).map_err(|error| cannot_write(folder, &error))?;
         look.introduce(&format!("Wrote the manual pages into {}", folder.display()));
         look.document(&json!({ "schema": 1, "folder": folder }));

@@ -1,7 +1,5 @@
 //! `lacuna look --model M --data D`: the missing force of every channel, without a search.
 
-use serde_json::{Value, json};
-
 use super::args::Look as Args;
 use super::console::Console;
 use super::failure::Failure;
@@ -9,8 +7,8 @@ use super::input;
 use super::outputs::{self, cannot_write};
 use lacuna::fault::Place;
 use lacuna::file::write_text;
-use lacuna::likelihood::{MissingForce, Predictor};
-use lacuna::report::MissingReport;
+use lacuna::likelihood::Predictor;
+use lacuna::report::{MissingReport, documents};
 
 /// The page, in its folder.
 const PAGE: &str = "look.html";
@@ -38,25 +36,6 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     write_text(&page, &report.html("Missing force"))
         .map_err(|error| cannot_write(&page, &error))?;
     look.say(&format!("Wrote {}", page.display()));
-    look.document(&json!({
-        "schema": 1,
-        "missing": missing.iter().map(channel).collect::<Vec<_>>(),
-        "report": page.display().to_string(),
-    }));
+    look.document(&documents::missing(&missing, Some(&page.display().to_string())));
     Ok(0)
-}
-
-fn channel(force: &MissingForce) -> Value {
-    let explained = force.explained_by.iter();
-    let by: Vec<Value> = explained
-        .map(|e| json!({ "coordinate": e.coordinate, "unit": e.unit, "share": e.share }))
-        .collect();
-    json!({
-        "channel": force.channel,
-        "unit": force.unit,
-        "rms": force.rms,
-        "log_likelihood_gain": force.gain,
-        "explained_by": by,
-        "alike": force.alike,
-    })
 }

@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use serde_json::{Map, Value, json};
-
 use super::args::Simulate;
 use super::console::{Console, print};
 use super::failure::Failure;
@@ -13,6 +11,7 @@ use lacuna::data::Record;
 use lacuna::digits::number;
 use lacuna::evaluate::{Metrics, Simulation};
 use lacuna::fault::Place;
+use lacuna::report::documents;
 
 pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
     if args.out.as_deref() == Some(Path::new("-")) && look.json {
@@ -52,17 +51,7 @@ pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
     if let Some(path) = args.out.as_ref().filter(|_| !piped) {
         look.say(&format!("Wrote {}", path.display()));
     }
-    let metrics: Map<String, Value> =
-        run.metrics.iter().map(|(name, metrics)| (name.clone(), json!(metrics))).collect();
-    let initial: Map<String, Value> =
-        run.initial_state.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
-    look.document(&json!({
-        "schema": 1,
-        "metrics": metrics,
-        "init_samples": run.init_samples,
-        "initial_state": initial,
-        "diverged_at": run.diverged_at,
-    }));
+    look.document(&documents::simulated(&run));
     Ok(0)
 }
 

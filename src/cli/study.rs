@@ -36,7 +36,8 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
         return exam::run(&document, config, args, seed, threads, look);
     }
     let study: MonteCarlo = document.read()?;
-    study.check()?;
+    let located = |error| Failure::from(error).in_file(config, &document, [""; 2]);
+    study.check().map_err(located)?;
     if args.cases {
         return list(study.jobs().into_iter().map(Job::key), look);
     }

@@ -51,7 +51,11 @@ pub(crate) fn gain(before: &Scored, after: &Scored, floors: &[Option<Floor>]) ->
         (0..before.errors.len()).filter(|&o| !before.errors[o].is_empty()).collect();
     let ratio = |o: usize| mean_square(&after.errors[o]) / mean_square(&before.errors[o]);
     let ratios: Vec<f64> = outputs.iter().map(|&o| ratio(o)).filter(|r| r.is_finite()).collect();
-    let test_rmse_ratio = (ratios.iter().sum::<f64>() / ratios.len().max(1) as f64).sqrt();
+    // where no output has anything to compare, nothing has changed
+    let test_rmse_ratio = match ratios.len() {
+        0 => 1.0,
+        count => (ratios.iter().sum::<f64>() / count as f64).sqrt(),
+    };
     let error_removed = removed(before, before, after, floors);
     let mut share = Share::default();
     for &o in &outputs {
@@ -79,7 +83,7 @@ pub(crate) fn gain(before: &Scored, after: &Scored, floors: &[Option<Floor>]) ->
     }
     let [low, high] = share.interval();
     Gain {
-        test_rmse_ratio: if test_rmse_ratio.is_finite() { test_rmse_ratio } else { 1.0 },
+        test_rmse_ratio,
         error_removed,
         interval95: [low.min(error_removed), high.max(error_removed)],
     }

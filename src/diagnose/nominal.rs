@@ -12,6 +12,8 @@ use crate::system::{Origin, Track};
 
 /// Samples at which slopes are looked at.
 const POINTS: usize = 9;
+/// Samples without which nothing can be followed.
+pub(crate) const LEAST: usize = 10;
 
 /// The course of a baseline along a record.
 pub(crate) struct Nominal {
@@ -46,7 +48,7 @@ impl Nominal {
         let base = &problem.base;
         let n = base.sizes;
         let known = track.y[0].iter().take_while(|v| v.is_finite()).count();
-        if known < 10 {
+        if known < LEAST {
             return None;
         }
         let entry = |origin| base.sources.at(origin);

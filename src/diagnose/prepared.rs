@@ -3,7 +3,7 @@
 use super::error::DiagnoseError;
 use super::finished::Finished;
 use super::library::Allowed;
-use super::nominal::Nominal;
+use super::nominal::{LEAST, Nominal};
 use super::nuisance::Nuisance;
 use super::problem::{Grain, Model, Problem};
 use super::records::{Joined, join};
@@ -73,7 +73,12 @@ impl<'a> Prepared<'a> {
         share: f64,
         starts: impl Fn(&Run<'_>) -> Vec<Vec<f64>>,
     ) -> Result<Self, DiagnoseError> {
+        let source = records.first().map_or_else(String::new, |r| r.source.clone());
         let joined = join(&system.signals(), records)?;
+        let samples = joined.drive.len();
+        if samples < LEAST {
+            return Err(EvaluateError::TooShort { record: source, samples, needed: LEAST }.into());
+        }
         let (step, drive) = (joined.sampling_time, joined.drive.clone());
         let problem = Problem::new(system, step, drive, &joined.measured, &joined.spans, share);
         let mut problem = problem.map_err(EvaluateError::from)?;
@@ -87,7 +92,6 @@ impl<'a> Prepared<'a> {
             // the fitted start leads nowhere: the stated one may
             start.starts = problem.baseline().starts;
         }
-        let source = records.first().map_or_else(String::new, |r| r.source.clone());
         let nominal = Nominal::new(&problem, &start).ok_or_else(|| diverges(&source))?;
         problem.coarsen(&start);
         Ok(Self { joined, problem, start, nominal, source })

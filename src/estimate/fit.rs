@@ -222,6 +222,12 @@ impl<'a> Fit<'a> {
         };
         let spreads = (0..signals.outputs.len()).map(spread).collect();
         let source = records.first().map_or_else(String::new, |r| r.source.clone());
+        let measured = runs.iter().flat_map(|run| run.measured.iter().flatten().flatten());
+        let (samples, needed) = (measured.filter(|y| y.is_finite()).count(), unknowns.len() + 1);
+        if samples < needed {
+            // as many numbers as unknowns are met exactly, whatever the model
+            return Err(EvaluateError::TooShort { record: source, samples, needed });
+        }
         Ok(Self { keys, unknowns, spreads, system, names, runs, source, watch, stretch })
     }
 }

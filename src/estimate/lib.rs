@@ -9,6 +9,6 @@ mod rank;
 
 pub use fit::{Estimate, Estimated, estimate};
 pub use fit::{estimate_by, estimate_with};
-pub use linear::linear_with;
 pub use linear::{LinearError, LinearEstimate, LinearParameter, Mode, linear};
+pub use linear::{linear_baseline, linear_with};
 pub use rank::Combination;

@@ -1,7 +1,8 @@
 //! Turns results into one HTML file that needs nothing else.
 
-use lacuna_core::{data, digits, effect, evaluate, file, system};
+use lacuna_core::{data, digits, effect, evaluate, file, look, system};
 use lacuna_diagnose as diagnose;
+use lacuna_estimate as estimate;
 use lacuna_learn::train;
 use lacuna_likelihood as likelihood;
 
@@ -12,7 +13,7 @@ mod cause;
 mod chart;
 mod column;
 mod distortion;
-mod document;
+pub mod documents;
 mod escape;
 mod figure;
 mod html;
@@ -33,7 +34,7 @@ use std::path::Path;
 use crate::diagnose::{Finding, Outlook, Verdict};
 use crate::digits::number;
 use crate::system::System;
-pub use document::{Beside, Document, cause_document};
+pub use documents::{Beside, Document, cause_document};
 pub use figure::{Figure, Role, Scale};
 pub use missing::MissingReport;
 pub use page::{Cell, Page, share};

@@ -6,7 +6,7 @@
 //! start's encoder is from the states at several noise levels. An [`Exam`] hides effects in
 //! machines and marks what the diagnosis makes of their records.
 
-use lacuna_core::{data, digits, effect, evaluate, fault, file, model, system, watch};
+use lacuna_core::{data, digits, effect, evaluate, fault, file, model, statistics, system, watch};
 use lacuna_diagnose as diagnose;
 use lacuna_learn::{encoder, train};
 use lacuna_report as report;
@@ -18,8 +18,10 @@ mod generate;
 mod job;
 mod monte_carlo;
 mod noise_study;
+mod rehearse;
 mod result;
 mod run;
+mod share;
 
 pub use error::StudyError;
 pub use exam::{
@@ -31,9 +33,11 @@ pub use generate::{Generate, Generated, Truth};
 pub use job::{Done, Frame, Job};
 pub use monte_carlo::{MonteCarlo, Start};
 pub use noise_study::{Level, NoiseStudy};
+pub use rehearse::{Rehearsal, Rehearsed};
 pub use result::{Quartiles, StudyResult, Summary};
 
 pub use monte_carlo::Inputs;
+pub use share::Share;
 
 /// What shard `i` of `n`, counted from 1, does of some work: every n-th piece.
 fn shard<T>(work: Vec<T>, i: usize, n: usize) -> Result<Vec<T>, StudyError> {

@@ -47,3 +47,24 @@ pub fn refused(folder: &Path, line: &str, kind: &str, at: At<'_>, words: &[&str]
     assert!(!ran.err.contains("\u{1b}["), "{line}: colour without a terminal");
     all
 }
+
+#[test]
+fn a_setting_is_found_in_the_file_that_sets_it() {
+    let folder = super::scratch("setting_place");
+    std::fs::write(folder.join("m.toml"), super::MODEL).unwrap();
+    let generate = |rms: f64, into: &str| {
+        let text = format!(
+            "model = \"m.toml\"\nsamples = {{ est = 50, test = 30 }}\nsnr_db = 30.0\n\
+             [excitation.filtered_noise]\ncutoff = 2.0\norder = 2\nrms = {rms:?}\n\
+             [[hidden]]\ninto = \"{into}\"\nof = \"v\"\neffect.cubic = {{ coefficient = -4.0 }}\n"
+        );
+        std::fs::write(folder.join("g.toml"), text).unwrap();
+    };
+    let at = |line, column, key| At { file: "g.toml", line, column, key };
+    generate(0.0, "force");
+    let place = at(7, 7, "excitation.filtered_noise.rms");
+    refused(&folder, "generate --config g.toml --out out", "input", place, &["positive"]);
+    generate(1.0, "nowhere");
+    let place = at(9, 8, "hidden[0].into");
+    refused(&folder, "generate --config g.toml --out out", "input", place, &["nowhere", "force"]);
+}

@@ -3,12 +3,13 @@
 use super::*;
 
 /// What is wrong with a value, by the part of JSON Schema that the files in `docs/schema` use:
-/// `type`, `const`, `enum`, `required`, `properties`, `additionalProperties`, `items`.
+/// `description`, `type`, `const`, `enum`, `required`, `properties`, `additionalProperties`, `items`.
 fn faults(value: &Value, schema: &Value, path: &str, found: &mut Vec<String>) {
     for key in schema.as_object().unwrap().keys() {
         let known = [
             "$schema",
             "title",
+            "description",
             "type",
             "const",
             "enum",

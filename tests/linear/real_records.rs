@@ -7,17 +7,8 @@ fn read(folder: &Path, name: &str) -> Record {
 }
 
 /// Order and test RMSE in the output's unit, the first `init` samples left out.
-fn tried(
-    name: &str,
-    train: &str,
-    tests: &[&str],
-    order: Option<usize>,
-    init: usize,
-) -> Option<Vec<f64>> {
-    let Some(folder) = measured(name) else {
-        println!("skipped: {name} is not there");
-        return None;
-    };
+fn tried(name: &str, train: &str, tests: &[&str], order: Option<usize>, init: usize) -> Vec<f64> {
+    let folder = measured(name);
     let begin = std::time::Instant::now();
     let found = linear(&[read(&folder, train)], order).unwrap();
     let seconds = begin.elapsed().as_secs_f64();
@@ -28,33 +19,33 @@ fn tried(
         "{name}: order {} ({how}), test RMSE {all:.5?}, NRMSE on the record {:.4} -> {:.4}, {seconds:.1} s",
         found.order, found.nrmse.0, found.nrmse.1
     );
-    Some(all)
+    all
 }
 
 #[test]
-fn silverbox() {
+#[ignore = "needs ../shared/data: cargo test --workspace -- --ignored shared_data"]
+fn shared_data_silverbox() {
     // a spring that hardens: the best linear model is off by 6.9 mV
     let tests = ["test_multisine.csv", "test_arrow.csv"];
-    if let Some(all) = tried("silverbox", "train_multisine.csv", &tests, Some(2), 50) {
-        assert!(all[0] < 0.0072 && all[1] < 0.0150, "{all:?}");
-    }
+    let all = tried("silverbox", "train_multisine.csv", &tests, Some(2), 50);
+    assert!(all[0] < 0.0072 && all[1] < 0.0150, "{all:?}");
     tried("silverbox", "train_multisine.csv", &tests, None, 50);
 }
 
 #[test]
-fn cascaded_tanks() {
+#[ignore = "needs ../shared/data: cargo test --workspace -- --ignored shared_data"]
+fn shared_data_cascaded_tanks() {
     for order in [Some(2), None] {
-        if let Some(all) = tried("cascaded_tanks", "train.csv", &["test.csv"], order, 50) {
-            assert!(all[0] < 0.75, "{all:?}");
-        }
+        let all = tried("cascaded_tanks", "train.csv", &["test.csv"], order, 50);
+        assert!(all[0] < 0.75, "{all:?}");
     }
 }
 
 #[test]
-fn wiener_hammerstein() {
+#[ignore = "needs ../shared/data: cargo test --workspace -- --ignored shared_data"]
+fn shared_data_wiener_hammerstein() {
     for order in [Some(6), None] {
-        if let Some(all) = tried("wiener_hammerstein", "train.csv", &["test.csv"], order, 50) {
-            assert!(all[0] < 0.046, "{all:?}");
-        }
+        let all = tried("wiener_hammerstein", "train.csv", &["test.csv"], order, 50);
+        assert!(all[0] < 0.046, "{all:?}");
     }
 }

@@ -67,12 +67,9 @@ fn without_empty_lines_there_is_no_key_and_no_section() {
 }
 
 #[test]
-fn the_papers_own_record() {
+#[ignore = "needs ../shared/data: cargo test --workspace -- --ignored shared_data"]
+fn shared_data_the_papers_own_record() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/msd_paper/train.csv");
-    if !path.exists() {
-        println!("skipped: {} is not there", path.display());
-        return;
-    }
     let text = "sampling_time = 0.1\nintegrator = { method = \"rk4\", substeps = 10 }\n\
         [model.mass_spring_damper]\nmasses = [0.5, 0.4]\nstiffness = [100.0, 100.0]\n\
         damping = [0.5, 0.5]\nhardening = [0.0, 1000.0]\ncubic_damping = [0.05, 0.0]\n";

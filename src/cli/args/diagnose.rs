@@ -37,6 +37,14 @@ pub struct Diagnose {
     /// Causes at most
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = positive)]
     pub max_causes: usize,
+    /// Simulates what was found so many times with noise like the record's, diagnoses each, and says
+    /// how often this record would mislead [default: not at all]
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub rehearse: usize,
+    /// Only every n-th rehearsal, from the i-th on; a call without --shard and with the same --out
+    /// does what is left and tells all
+    #[arg(long, value_name = "I/N", value_parser = super::study::shard, requires = "rehearse")]
+    pub shard: Option<(usize, usize)>,
     /// Samples from which the test record's initial state is estimated; its figures leave
     /// them out [default: until the start is forgotten, at most 10 %]
     #[arg(long, value_name = "N")]

@@ -9,4 +9,8 @@ pub struct Man {
     /// Folder for one page a command [default: the main page on stdout]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Writes the reference of the book instead: Markdown pages of all commands, models, effects and
+    /// JSON fields
+    #[arg(long, requires = "out")]
+    pub markdown: bool,
 }

@@ -42,7 +42,7 @@ pub struct Merge {
     pub out: PathBuf,
 }
 
-fn shard(text: &str) -> Result<(usize, usize), String> {
+pub(super) fn shard(text: &str) -> Result<(usize, usize), String> {
     let parts = text.split_once('/').map(|(i, n)| (i.parse(), n.parse()));
     match parts {
         Some((Ok(i), Ok(n))) if 1 <= i && i <= n => Ok((i, n)),

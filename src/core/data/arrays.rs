@@ -5,8 +5,7 @@
 //! column a channel, and a third axis numbers records. Scalars `Ts`, `dt`, `sampling_time`
 //! (s) and `fs` (Hz) state the step.
 
-use super::csv::place;
-use super::error::DataError;
+use super::error::{DataError, place};
 use super::remark::Remark;
 use super::table::{CellFault, CellProblem, Column, Table};
 use std::collections::BTreeMap;
@@ -166,7 +165,7 @@ pub(super) fn column(
 }
 
 /// The second column of a name, and the number of the first.
-fn twice(columns: &[Column]) -> Option<(String, usize)> {
+pub(super) fn twice(columns: &[Column]) -> Option<(String, usize)> {
     let mut known = BTreeMap::new();
     columns
         .iter()

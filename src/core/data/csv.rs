@@ -12,12 +12,11 @@ mod date;
 mod fields;
 mod header;
 
-use super::error::DataError;
+use super::error::{DataError, place};
 use super::remark::Remark;
 use super::table::{CellFault, CellProblem, Table};
 use super::text;
 use crate::disk::regular;
-use crate::fault::Place;
 use begin::begin;
 use date::Instant;
 use fields::{is_comment, lines, quoted};
@@ -28,9 +27,14 @@ pub(super) fn unreadable(source: &str, error: io::Error) -> DataError {
     DataError::Open { at: place(source, None, None), source: error }
 }
 
+/// Whether this begins as gzip does (RFC 1952, section 2.3.1).
+pub(super) fn is_packed(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0x1F, 0x8B])
+}
+
 /// Unpacks what begins as gzip does and hands everything else through.
 pub(super) fn unpack(bytes: Vec<u8>, source: &str) -> Result<Vec<u8>, DataError> {
-    if !bytes.starts_with(&[0x1F, 0x8B]) {
+    if !is_packed(&bytes) {
         return Ok(bytes);
     }
     let unpacked = regular::unpack(&bytes);
@@ -269,10 +273,6 @@ impl Sheet {
         }
         Ok(self.table)
     }
-}
-
-pub(super) fn place(source: &str, line: Option<usize>, column: Option<usize>) -> Box<Place> {
-    Box::new(Place { file: Some(source.to_owned()), line, column, key: None })
 }
 
 /// At most 40 characters of a text.

@@ -97,6 +97,16 @@ pub enum DataError {
         /// What to try.
         remedy: String,
     },
+    /// Columns of which nothing tells what they are: inputs or outputs.
+    #[error("{}{problem}", .at.lead())]
+    Roles {
+        /// The file, or the column as key.
+        at: Box<Place>,
+        /// What is not told.
+        problem: String,
+        /// What to try.
+        remedy: String,
+    },
     /// Numbers, or nothing, where the column names should be.
     #[error("{}found `{found}` where the column names belong", .at.lead())]
     NoHeader {
@@ -315,4 +325,14 @@ impl DataError {
         let at = Box::new(Place { key: Some(key.into()), ..Place::default() });
         Self::Setting { at, value, rule }
     }
+
+    /// A file of a kind that is not read, and how to make one of it that is.
+    pub(super) fn of_other_kind(source: &str, found: &'static str, remedy: &'static str) -> Self {
+        Self::OtherKind { at: place(source, None, None), found, remedy }
+    }
+}
+
+/// A place in a file.
+pub(super) fn place(source: &str, line: Option<usize>, column: Option<usize>) -> Box<Place> {
+    Box::new(Place { file: Some(source.to_owned()), line, column, key: None })
 }

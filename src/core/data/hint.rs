@@ -29,6 +29,7 @@ impl Explain for DataError {
             | Self::Array { at, .. }
             | Self::Several { at, .. }
             | Self::Choice { at, .. }
+            | Self::Roles { at, .. }
             | Self::NoHeader { at, .. }
             | Self::Header { at, .. }
             | Self::DuplicateColumn { at, .. }
@@ -77,7 +78,7 @@ impl Explain for DataError {
                 "a signal is an array of real numbers: one value a sample, or samples by channels".into()
             }
             Self::Several { .. } => "put the record that is meant into a file of its own".into(),
-            Self::Choice { remedy, .. } => remedy.clone(),
+            Self::Choice { remedy, .. } | Self::Roles { remedy, .. } => remedy.clone(),
             Self::NoHeader { comment: Some(line), .. } => {
                 format!("if line {line} holds the names, remove its `#`; else add a line such as `time,u,y` above the numbers")
             }

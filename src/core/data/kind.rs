@@ -4,7 +4,6 @@ use super::csv;
 use super::error::DataError;
 use super::table::Table;
 use super::{mat, npy, npz, records};
-use crate::fault::Place;
 
 /// First bytes of kinds that hold records but are not read, what they are, and how to make
 /// a file of them that is.
@@ -86,11 +85,11 @@ pub(super) fn tables(bytes: &[u8], source: &str) -> Result<Vec<Table>, DataError
     }
     let other = OTHERS.iter().find(|(first, ..)| bytes.starts_with(first));
     if let Some((_, found, remedy)) = other {
-        return Err(of_other_kind(source, found, remedy));
+        return Err(DataError::of_other_kind(source, found, remedy));
     }
     let text = bytes.trim_ascii_start();
     if text.starts_with(b"{") {
-        return Err(of_other_kind(
+        return Err(DataError::of_other_kind(
             source,
             "JSON text",
             "in Python: `pandas.read_json('record.json').to_csv('record.csv', index=False)`",
@@ -98,12 +97,7 @@ pub(super) fn tables(bytes: &[u8], source: &str) -> Result<Vec<Table>, DataError
     }
     let model = |line: &[u8]| line.starts_with(b"[model.") || line.starts_with(b"[[effects]]");
     if bytes.split(|byte| *byte == b'\n').take(200).any(model) {
-        return Err(of_other_kind(source, "a model file", "hand it in by --model"));
+        return Err(DataError::of_other_kind(source, "a model file", "hand it in by --model"));
     }
     records::of_column(csv::parse(bytes, source)?)
-}
-
-pub(super) fn of_other_kind(source: &str, found: &'static str, remedy: &'static str) -> DataError {
-    let at = Place { file: Some(source.to_owned()), ..Place::default() };
-    DataError::OtherKind { at: Box::new(at), found, remedy }
 }

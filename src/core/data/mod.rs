@@ -20,6 +20,7 @@
 //! ```
 
 mod arrays;
+mod bare;
 mod clock;
 mod csv;
 mod error;
@@ -28,9 +29,11 @@ mod hint;
 mod kind;
 mod mat;
 mod matching;
+mod memory;
 pub mod noise;
 mod npy;
 mod npz;
+mod open;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod periods;
@@ -48,6 +51,7 @@ mod text;
 pub mod unit;
 mod write;
 
+pub use bare::Bare;
 pub use error::DataError;
 pub use excite::{
     Excitation, FilteredNoise, Lines, Multisine, Phases, Prbs, Sequence, Steps, crest_factor,

@@ -8,8 +8,7 @@
 mod descr;
 
 use super::arrays::{Array, Group, MOST, tables as laid_out};
-use super::csv::place;
-use super::error::DataError;
+use super::error::{DataError, place};
 use super::table::Table;
 use crate::fault::Place;
 use descr::{Field, Header};

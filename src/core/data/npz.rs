@@ -1,9 +1,7 @@
 //! NumPy's `.npz`: a zip archive of `.npy` files, one for each array.
 
 use super::arrays::{Group, MOST, tables as laid_out};
-use super::csv::place;
-use super::error::DataError;
-use super::kind::of_other_kind;
+use super::error::{DataError, place};
 use super::npy;
 use super::table::Table;
 use std::io::{Cursor, Read};
@@ -22,11 +20,15 @@ pub(super) fn tables(bytes: &[u8], source: &str) -> Result<Vec<Table>, DataError
         archive.file_names().filter_map(Result::ok).map(|name| name.into_owned()).collect();
     if names.iter().any(|name| name == "xl/workbook.xml" || name == "xl/workbook.bin") {
         let remedy = "in Excel, save the sheet as `CSV UTF-8`; in Python: `pandas.read_excel('record.xlsx').to_csv('record.csv', index=False)`";
-        return Err(of_other_kind(source, "an Excel workbook", remedy));
+        return Err(DataError::of_other_kind(source, "an Excel workbook", remedy));
     }
     if !names.iter().any(|name| name.ends_with(".npy")) {
         let remedy = "unpack it and hand in the record that is in it";
-        return Err(of_other_kind(source, "a zip archive without any NumPy array", remedy));
+        return Err(DataError::of_other_kind(
+            source,
+            "a zip archive without any NumPy array",
+            remedy,
+        ));
     }
     let mut group = Group { second: 1.0, ..Group::default() };
     for k in 0..archive.len() {

@@ -1,8 +1,7 @@
 //! Parquet files, where the feature `parquet` is built in: columns of numbers and instants.
 
 use super::arrays::column;
-use super::csv::place;
-use super::error::DataError;
+use super::error::{DataError, place};
 use super::records;
 use super::remark::Remark;
 use super::table::Table;

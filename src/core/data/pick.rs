@@ -55,21 +55,7 @@ impl Table {
     ///
     /// As [`Table::record_for`]; a table without any such output lacks the column `y`.
     pub fn u_and_y(&self) -> Result<Record, DataError> {
-        let of = |letter: char| {
-            let number = |name: &str| -> Option<u32> {
-                match name.strip_prefix(letter)? {
-                    "" => Some(0),
-                    digits => {
-                        digits.bytes().all(|b| b.is_ascii_digit()).then(|| digits.parse().ok())?
-                    }
-                }
-            };
-            let names = self.columns.iter().map(|column| column.name.as_str());
-            let mut found: Vec<_> = names.filter_map(|name| Some((number(name)?, name))).collect();
-            found.sort_unstable();
-            found.into_iter().map(|(_, name)| name).collect::<Vec<_>>()
-        };
-        let (inputs, mut outputs) = (of('u'), of('y'));
+        let (inputs, mut outputs) = (self.lettered('u'), self.lettered('y'));
         if outputs.is_empty() {
             outputs.push("y");
         }

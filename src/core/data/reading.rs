@@ -75,6 +75,28 @@ impl Table {
         table.record_for(want)
     }
 
+    /// The record that a model is simulated along, which need not hold outputs. Where it holds
+    /// columns that nobody asks for, the outputs are rather misspelt, and refused, than left out
+    /// on purpose.
+    ///
+    /// # Errors
+    ///
+    /// As [`Table::record_by`].
+    pub fn record_to_simulate(
+        &self,
+        want: &Want,
+        reading: &Reading,
+    ) -> Result<(Record, Vec<Remark>), DataError> {
+        let free = Want { outputs_required: !reading.outputs.is_empty(), ..want.clone() };
+        let (record, remarks) = self.record_by(&free, reading)?;
+        let absent = remarks.iter().any(|r| matches!(r, Remark::AbsentOutputs { .. }));
+        let extra = remarks.iter().any(|r| matches!(r, Remark::ExtraColumns { .. }));
+        if absent && extra && reading.inputs.is_empty() {
+            self.record_by(want, reading)?;
+        }
+        Ok((record, remarks))
+    }
+
     /// Gives columns other names, the old one first.
     ///
     /// # Errors

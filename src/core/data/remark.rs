@@ -33,6 +33,8 @@ pub enum Remark {
         /// The input or output, or `time`.
         signal: String,
     },
+    /// The name ends in `.gz`, and the content is not packed.
+    NotPacked,
     /// The file is not UTF-8.
     Encoding {
         /// How it was read.

@@ -5,8 +5,7 @@
 //! Windows-1252, the superset of Latin-1 that loggers and spreadsheets of Western Europe
 //! write (WHATWG Encoding Standard, index windows-1252), and that is said.
 
-use super::csv::place;
-use super::error::DataError;
+use super::error::{DataError, place};
 use super::remark::Remark;
 use std::borrow::Cow;
 

@@ -5,8 +5,10 @@ mod forgetting;
 mod metric;
 mod run;
 mod simulate;
+mod want;
 
 pub use error::EvaluateError;
 pub use metric::Metrics;
-pub use run::{Run, drive, measured};
-pub use simulate::{Init, Simulation};
+pub use run::{Init, Run, drive, measured};
+pub use simulate::Simulation;
+pub use want::want;

@@ -1,7 +1,6 @@
 //! A system and a record, compiled: inputs, starts, tracks.
 
 use super::error::EvaluateError;
-use super::simulate::Init;
 use crate::data::Record;
 use crate::model::Signals;
 use crate::optimise::{Levenberg, Settings, Unknown};
@@ -49,6 +48,16 @@ pub fn measured(signals: &Signals, record: &Record) -> Vec<Option<Vec<f64>>> {
             by_name.or(record.outputs.get(i).filter(|_| by_position)).map(|s| s.values.clone())
         })
         .collect()
+}
+
+/// How many samples the initial state is estimated from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Init {
+    /// Until the start's influence on the outputs is below 1e-3, at most 10 % of the record.
+    #[default]
+    Forgotten,
+    /// This many; 0 holds the model's `initial`.
+    Samples(usize),
 }
 
 /// A system and a record, compiled.

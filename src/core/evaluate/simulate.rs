@@ -2,19 +2,9 @@
 
 use super::error::EvaluateError;
 use super::metric::Metrics;
-use super::run::Run;
+use super::run::{Init, Run};
 use crate::data::Record;
 use crate::system::System;
-
-/// How many samples the initial state is estimated from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Init {
-    /// Until the start's influence on the outputs is below 1e-3, at most 10 % of the record.
-    #[default]
-    Forgotten,
-    /// This many; 0 holds the model's `initial`.
-    Samples(usize),
-}
 
 /// A free run: what the model makes of the inputs alone.
 ///

@@ -1,7 +1,7 @@
 //! What stands in a file beside the model file: the numbers of learned laws.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use serde_json::{Map, Value as Json};
 
@@ -49,6 +49,11 @@ pub fn gathered(document: &Document) -> Result<Option<Document>, FileError> {
             let complaint = Complaint::NoFolder { file: name.into() };
             return fault(&file.node.span, ".file", complaint);
         };
+        let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+        if !Path::new(name).components().all(inside) {
+            let complaint = Complaint::Elsewhere { file: name.into() };
+            return fault(&file.node.span, ".file", complaint);
+        }
         let path = folder.join(name);
         match Document::load(&path) {
             Ok(beside) => own.value = numbers(&beside, &file.node.span)?,

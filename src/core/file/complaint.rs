@@ -62,6 +62,12 @@ pub enum Complaint {
         /// What the system said.
         reason: String,
     },
+    /// A file that does not stand beside the model file.
+    #[error("the file `{file}` does not stand beside the model file")]
+    Elsewhere {
+        /// The file.
+        file: String,
+    },
     /// A file beside a model that was read from memory.
     #[error(
         "the file `{file}` stands beside the model file, and this model was read from memory, where there is no folder"

@@ -7,7 +7,7 @@ use serde::Deserialize;
 
 use super::complaint::Complaint;
 use super::error::FileError;
-use super::node::{Node, Syntax, Value};
+use super::node::{Node, Syntax, Value, steps};
 use super::source::{Source, Spot};
 use super::{json, read, toml};
 use crate::disk::regular::read_regular;
@@ -146,6 +146,15 @@ impl Document {
     pub fn spot(&self, key: &str) -> Spot {
         let (node, _) = self.root.find(key);
         self.source.spot(node.span.clone(), key)
+    }
+
+    /// The place of the only value whose key path ends in `key`: what checks a type knows its
+    /// own keys, not those around it. None where there is no such value, or several.
+    pub fn spot_ending(&self, key: &str) -> Option<Spot> {
+        match &self.root.paths_to(&steps(key))[..] {
+            [path] => Some(self.spot(path)),
+            _ => None,
+        }
     }
 
     /// The place of `length` characters from character `at`, from 0, of the text at a key

@@ -238,8 +238,9 @@ fn complaint_hint(complaint: &Complaint) -> Option<String> {
         Complaint::Several { .. } => "keep one of them",
         Complaint::Nothing => "write the name of a model or an effect as a key of this table",
         Complaint::NotFinite { .. } => "leave a bound that does not exist out",
-        Complaint::Beside { .. } => {
-            "keep the file beside the model file, or write its path from there"
+        Complaint::Beside { .. } => "keep the file beside the model file, and write its name",
+        Complaint::Elsewhere { .. } => {
+            "keep it in the model file's folder or below: a model file opens nothing else"
         }
         Complaint::NoFolder { .. } => {
             "load the model file by its path, or write what the file holds in place of `file`"

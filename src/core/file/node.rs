@@ -70,6 +70,19 @@ pub fn steps(path: &str) -> Vec<Step> {
         .collect()
 }
 
+/// The key path of steps.
+fn path(steps: &[Step]) -> String {
+    let mut path = String::new();
+    for step in steps {
+        match step {
+            Step::Number(number) => path += &format!("[{number}]"),
+            Step::Key(key) if path.is_empty() => path += key,
+            Step::Key(key) => path += &format!(".{key}"),
+        }
+    }
+    path
+}
+
 impl Node {
     /// The entry of a key, where this is a table that has it.
     pub fn entry(&self, key: &str) -> Option<&Entry> {
@@ -99,6 +112,33 @@ impl Node {
             }
         }
         (node, true)
+    }
+
+    /// The full key paths that end in these steps.
+    pub fn paths_to(&self, end: &[Step]) -> Vec<String> {
+        let mut found = vec![];
+        self.collect(end, &mut vec![], &mut found);
+        found
+    }
+
+    fn collect(&self, end: &[Step], steps: &mut Vec<Step>, found: &mut Vec<String>) {
+        if !end.is_empty() && steps.ends_with(end) {
+            found.push(path(steps));
+        }
+        let mut follow = |step: Step, node: &Node| {
+            steps.push(step);
+            node.collect(end, steps, found);
+            steps.pop();
+        };
+        match &self.value {
+            Value::List(list) => {
+                list.iter().enumerate().for_each(|(k, node)| follow(Step::Number(k), node));
+            }
+            Value::Table(entries) => {
+                entries.iter().for_each(|entry| follow(Step::Key(entry.key.clone()), &entry.node));
+            }
+            _ => {}
+        }
     }
 
     /// The text, where this is one.

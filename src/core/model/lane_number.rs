@@ -1,15 +1,7 @@
 //! The kinds of number that laws are called with.
 
-use super::law::{Block, Call};
-use crate::real::{Dual, F32x16, F64x8, Given, InRegisters, Real, Trace};
-
-/// Directions that a dual number carries through a model at once.
-pub const DIRECTIONS: usize = 4;
-
-/// Double precision with slopes along [`DIRECTIONS`] directions.
-pub type Dual64 = Dual<F64x8, DIRECTIONS>;
-/// Single precision with slopes along [`DIRECTIONS`] directions.
-pub type Dual32 = Dual<F32x16, DIRECTIONS>;
+use super::block::{Block, Call, Dual32, Dual64};
+use crate::real::{F32x16, F64x8, Given, InRegisters, Real, Trace};
 
 /// A number that a [`Law`](super::Law) can be called with.
 pub trait LaneNumber: InRegisters {

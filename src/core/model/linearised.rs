@@ -4,8 +4,9 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
+use super::block::{Ask, Block, Call};
 use super::lane_number::LaneNumber;
-use super::law::{Ask, Block, Call, Law, Matrices};
+use super::law::{Law, Matrices};
 use super::{Dual32, Dual64, Fault, Signals, Sizes, StateSpaceModel};
 use crate::real::{F64x8, Lanes, Real, Trace};
 use table::{Place, Rows};

@@ -6,20 +6,23 @@
 //! [`StateSpaceModel`] is the registered trait: empty, with `Law` below it.
 
 mod at;
+mod block;
 pub mod equations;
 mod lane_number;
 mod law;
 pub mod linearised;
 pub mod lti;
 mod march;
+mod physical_law;
 mod physics;
 pub mod probe;
 mod signals;
 
 pub use at::At;
-pub use lane_number::{DIRECTIONS, Dual32, Dual64, LaneNumber};
-pub use law::{Ask, Block, Call, Fault, Law, Matrices, Pull, PullCall, Sizes};
-pub use march::{March, MarchCall, Stage, Way};
+pub use block::{Ask, Block, Call, DIRECTIONS, Dual32, Dual64, Pull, PullCall, Sizes};
+pub use lane_number::LaneNumber;
+pub use law::{Fault, Law, Matrices};
+pub use march::call::{March, MarchCall, Stage, Way};
 pub use physics::Physics;
 pub use signals::{Parameter, Quantity, Signal, Signals, State, TimeKind};
 

@@ -2,8 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::lane_number::{Dual64, LaneNumber};
-use super::law::{Ask, Block, Law, Matrices, Sizes};
+use super::block::{Ask, Block, Dual64, Sizes};
+use super::lane_number::LaneNumber;
+use super::law::{Law, Matrices};
 use crate::real::{F64x8, Real};
 
 type D = Dual64;

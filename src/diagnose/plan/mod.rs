@@ -16,6 +16,7 @@
 //! of other experiments, simulated on the model: other levels, an offset, other bands, a sensor
 //! more.
 
+mod alike;
 mod asking;
 mod experiments;
 mod look;

@@ -5,6 +5,7 @@
 //! A, C -- fit --> B, D, offset -- refine --> least simulation error -- form, told --> System
 //! ```
 
+mod baseline;
 mod error;
 mod fit;
 mod form;
@@ -20,6 +21,7 @@ use crate::statistics::rms;
 use crate::system::System;
 use crate::watch::Watch;
 
+pub use baseline::linear_baseline;
 pub use error::LinearError;
 use fit::{Fitted, Free};
 use search::{Found, Search};

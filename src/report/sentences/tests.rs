@@ -61,8 +61,8 @@ fn a_sum_of_laws_is_one_sentence() {
         wording: Wording { title: title.into(), ..of.wording.clone() },
     };
     cause.parts = vec![part("Dry friction of speed", &cause), part("Linear damping", &own)];
-    let said = "Dry friction of speed on carriage, -20.4 +- 0.6 N, together with linear damping, \
-                -3.1 +- 0.4 N s/m; without it 50 % of the removable error comes back.";
+    let said = "Dry friction of speed on carriage, -20.40 +- 0.60 N, together with linear damping, \
+                -3.10 +- 0.40 N s/m; without it 50 % of the removable error comes back.";
     assert_eq!(super::cause(&cause), said);
     assert!(cause.holds("law", "carriage", Some("speed")));
     assert!(

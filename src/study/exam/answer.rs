@@ -117,7 +117,7 @@ pub struct Answers {
 }
 
 /// A name in tables.
-pub(super) fn short(effect: &str, into: &str, of: Option<&str>) -> String {
+pub(crate) fn short(effect: &str, into: &str, of: Option<&str>) -> String {
     format!("{effect}>{into}<{}", of.unwrap_or("-"))
 }
 

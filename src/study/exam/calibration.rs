@@ -4,8 +4,7 @@
 //! Murphy and Winkler, Applied Statistics 26, 1977). Coefficients and gain: coverage of 95 %
 //! intervals, and rank histograms: the share of the told distribution, normal of the told standard
 //! error, that lies below the true value is uniform where all is well (Talts, Betancourt, Simpson,
-//! Vehtari and Gelman, arXiv 1804.06788, 2018), tested by chi-square. Shares have Wilson's 95 %
-//! intervals (Brown, Cai and DasGupta, Statistical Science 16, 2001).
+//! Vehtari and Gelman, arXiv 1804.06788, 2018), tested by chi-square.
 
 use std::collections::BTreeMap;
 
@@ -13,44 +12,12 @@ use serde::Serialize;
 use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 
 use super::{ExamResult, Hit, Kind, Marks};
+use crate::share::Share;
 
 /// Bins of probabilities and of ranks.
 const BINS: usize = 10;
 /// Expected ranks in a bin below which chi-square says nothing.
 const FEW: f64 = 5.0;
-
-/// A share with its 95 % interval.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Share {
-    /// How often it could have been.
-    pub of: usize,
-    /// How often it was.
-    pub count: usize,
-    /// The share; `None` of nothing.
-    pub share: Option<f64>,
-    /// Wilson's 95 % interval.
-    pub interval95: [f64; 2],
-}
-
-impl Share {
-    fn of(all: impl IntoIterator<Item = bool>) -> Self {
-        let (mut of, mut count) = (0, 0);
-        for yes in all {
-            (of, count) = (of + 1, count + usize::from(yes));
-        }
-        let (n, z) = (of as f64, 1.959_963_984_540_054_f64);
-        let p = count as f64 / n.max(1.0);
-        let whole = 1.0 + z * z / n.max(1.0);
-        let middle = (p + z * z / (2.0 * n.max(1.0))) / whole;
-        let half =
-            z / whole * (p * (1.0 - p) / n.max(1.0) + (z / (2.0 * n.max(1.0))).powi(2)).sqrt();
-        let interval95 = match of {
-            0 => [0.0, 1.0],
-            _ => [(middle - half).max(0.0), (middle + half).min(1.0)],
-        };
-        Self { of, count, share: (of > 0).then_some(p), interval95 }
-    }
-}
 
 /// One bin of the reliability diagram.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -262,14 +229,5 @@ mod tests {
         let high = Ranks::of(&high, [true]);
         assert!(high.histogram[0] > 3 * high.histogram[9], "{high:?}");
         assert_eq!(Ranks::of(&[0.1], [true]).chi_square_p, None);
-    }
-
-    #[test]
-    fn shares_have_intervals_that_hold_them() {
-        let none = Share::of([]);
-        assert_eq!((none.share, none.interval95), (None, [0.0, 1.0]));
-        // Wilson's interval of 0 in 60: 0 to z^2 / (n + z^2)
-        let clean = Share::of((0..60).map(|_| false));
-        assert!(clean.interval95[0] == 0.0 && (clean.interval95[1] - 0.0602).abs() < 1e-3);
     }
 }

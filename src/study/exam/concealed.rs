@@ -39,12 +39,15 @@ pub struct Outside {
 }
 
 impl Outside {
+    /// The law, as a model file declares it.
+    pub(super) fn written(&self) -> Result<WrittenEffect, StudyError> {
+        WrittenEffect::new(&self.name, self.law.clone())
+            .map_err(|e| StudyError::setting("outside.law", &self.name, &format!("a law: {e}")))
+    }
+
     /// The same as an effect that can be placed.
     fn concealed(&self) -> Result<Concealed, StudyError> {
-        let wrong = |e: &dyn std::fmt::Display| {
-            StudyError::setting("outside.law", &self.name, &format!("a law: {e}"))
-        };
-        let law = WrittenEffect::new(&self.name, self.law.clone()).map_err(|e| wrong(&e))?;
+        let law = self.written()?;
         let mut values = crate::effect::Shape::card(&law).values();
         let names: Vec<&String> = self.law.parameters.iter().map(|(name, _)| name).collect();
         for (name, value) in &self.values {

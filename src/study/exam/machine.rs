@@ -92,6 +92,9 @@ impl Machine {
         for &hidden in &case.hidden {
             let grown = self.sized(&all[hidden], truth, &driven, &base, &sigmas, case.g)?;
             machine.effects.push(grown);
+            if let Some(outside) = hidden.checked_sub(self.hidden.len()) {
+                machine.written.push(self.outside[outside].written()?);
+            }
         }
         let y = self.outputs(&machine, &driven)?.ok_or_else(diverges)?;
         self.check_steps(case, (truth, &base), (&machine, &y), &driven, &sigmas)?;

@@ -21,6 +21,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+pub(crate) use answer::short;
 pub use answer::{Answer, Answered, Answers, Named, Number};
 pub use calibration::Calibration;
 pub use case::{Case, Kind};

@@ -2,8 +2,8 @@
 
 use super::begin::Begin;
 use super::fields::{number, quoted};
-use super::{Tally, place, shortened};
-use crate::data::error::DataError;
+use super::{Tally, shortened};
+use crate::data::error::{DataError, place};
 use crate::data::remark::Remark;
 use crate::data::table::{CellProblem, Column};
 use crate::data::unit;

@@ -12,9 +12,7 @@ mod level4;
 mod matrix;
 
 use super::arrays::{Array, Group, Labels, tables as laid_out};
-use super::csv::place;
-use super::error::DataError;
-use super::kind::of_other_kind;
+use super::error::{DataError, place};
 use super::npy::row_by_row;
 use super::remark::Remark;
 use super::table::Table;
@@ -38,7 +36,7 @@ fn is_level_5(bytes: &[u8]) -> bool {
 /// The records in a `.mat` file.
 pub(super) fn tables(bytes: &[u8], source: &str) -> Result<Vec<Table>, DataError> {
     if bytes.starts_with(b"MATLAB 7.3") || matches!(bytes.get(512..516), Some(b"\x89HDF")) {
-        return Err(of_other_kind(source, "a .mat file of version 7.3 (HDF5)", AS_7));
+        return Err(DataError::of_other_kind(source, "a .mat file of version 7.3 (HDF5)", AS_7));
     }
     let broken = |found: String| DataError::Broken { at: place(source, None, None), found };
     let variables = if is_level_5(bytes) {

@@ -20,6 +20,9 @@ impl fmt::Display for Remark {
             Self::Spelling { column, signal } => {
                 write!(f, "column `{column}` taken for `{signal}`")
             }
+            Self::NotPacked => {
+                write!(f, "the name ends in .gz, but nothing is packed; read as it is")
+            }
             Self::Encoding { name, line } => {
                 write!(
                     f,

@@ -219,7 +219,12 @@ impl<'a> Builder<'a> {
                 self.fault(format!("channels[{i}].into"), Problem::NoEntries);
             }
             for (j, entry) in channel.into.iter().enumerate() {
-                let gain = self.value(&format!("channels[{i}].into[{j}].gain"), &entry.gain);
+                let key = format!("channels[{i}].into[{j}].gain");
+                let gain = self.value(&key, &entry.gain);
+                if let Some(number) = self.graph.input_within(gain) {
+                    let input = self.table.inputs[number].name.clone();
+                    self.fault(key, Problem::GainOfInput { input });
+                }
                 let Some((Role::State, state)) = self.names.role(&entry.state) else {
                     let known = self.table.states.iter().map(|state| state.name.clone()).collect();
                     let problem = Problem::UnknownState { state: entry.state.clone(), known };

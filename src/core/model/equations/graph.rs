@@ -115,6 +115,14 @@ impl Graph {
         self.still.get(id).copied().unwrap_or_default()
     }
 
+    /// The first input that a term is made of.
+    pub fn input_within(&self, id: Id) -> Option<usize> {
+        match self.terms[id] {
+            Term::Input(number) => Some(number),
+            term => term.parts().into_iter().flatten().find_map(|part| self.input_within(part)),
+        }
+    }
+
     /// What follows from the parameters alone and is needed for these terms: the largest
     /// such parts, each once.
     pub fn derived(&self, roots: &[Id]) -> Vec<Id> {

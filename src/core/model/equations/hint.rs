@@ -71,6 +71,9 @@ impl Problem {
             Self::UnknownState { state, known } => {
                 return Some(among(state, known.iter().map(String::as_str)));
             }
+            Self::GainOfInput { .. } => {
+                "use parameters and states only; what depends on an input is a law of the effect"
+            }
             Self::UnknownFunction { name } => {
                 let elsewhere = ELSEWHERE.iter().find(|(other, _)| other == name);
                 return Some(match elsewhere {

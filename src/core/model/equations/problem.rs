@@ -238,4 +238,10 @@ pub enum Problem {
         /// Names of all states.
         known: Vec<String>,
     },
+    /// A channel's gain that an input changes.
+    #[error("the gain of a channel depends on the input `{input}`")]
+    GainOfInput {
+        /// The input.
+        input: String,
+    },
 }

@@ -1,7 +1,7 @@
 //! The numbers of a linearisation, at the parameters of every lane.
 
-use super::super::lane_number::{DIRECTIONS, Dual64, LaneNumber};
-use super::super::law::{Ask, Block};
+use super::super::block::{Ask, Block, DIRECTIONS, Dual64};
+use super::super::lane_number::LaneNumber;
 use super::super::{Sizes, StateSpaceModel};
 use crate::per_lanes;
 use crate::real::{F64x8, Real};

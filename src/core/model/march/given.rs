@@ -1,7 +1,7 @@
 //! What a kernel is given, entry by entry.
 
-use super::Stage;
-use crate::model::law::Sizes;
+use super::call::Stage;
+use crate::model::block::Sizes;
 use crate::real::fused::{Folded, Fuse};
 
 /// The largest law: parameters, derived numbers, inputs, channels, states.

@@ -4,13 +4,13 @@
 //! loops, so that all of them stay in registers and what is 0 vanishes (see
 //! [`fused`](crate::real::fused)).
 
+use super::call::{March, Way};
 use super::given::{
     Around, CHANNELS, DERIVED, Given, INPUTS, STATES, THETA, as_registers, as_registers_mut,
     each_state, holds, listed,
 };
-use super::{March, Way};
 use crate::model::at::At;
-use crate::model::law::{Pull, Sizes};
+use crate::model::block::{Pull, Sizes};
 use crate::model::physics::Physics;
 use crate::real::fused::{Folded, Fuse, Fusing, Pair, Sparse};
 use crate::real::{Isa, Real};

@@ -250,3 +250,10 @@ fn autonomous_and_discrete_models_are_fine() {
     assert!(!signals.time.is_continuous());
     assert_eq!(signals.initial(), [0.4]);
 }
+
+#[test]
+fn the_gain_of_a_channel_depends_on_no_input() {
+    let (key, _, problem) = after("gain = \"1/J\"", "gain = \"(1 + gravity*torque)/J\"");
+    assert_eq!(key, "channels[0].into[0].gain");
+    assert_eq!(problem, Problem::GainOfInput { input: "torque".into() });
+}

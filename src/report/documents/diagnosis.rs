@@ -5,9 +5,9 @@
 
 use serde::Serialize;
 
-use super::provenance::Provenance;
-use super::sentences;
 use crate::diagnose::{Cause, Finding, Withdrawn};
+use crate::provenance::Provenance;
+use crate::sentences;
 
 /// Version of the form.
 const SCHEMA: u32 = 1;
@@ -29,6 +29,8 @@ pub struct Document<'a> {
     finding: Said<'a>,
     extended_model: &'a str,
     report: &'a str,
+    #[serde(flatten)]
+    more: serde_json::Map<String, serde_json::Value>,
     provenance: &'a Provenance,
     date: &'a str,
 }
@@ -105,7 +107,18 @@ impl<'a> Document<'a> {
     pub fn of(finding: &'a Finding, beside: Beside<'a>, provenance: &'a Provenance) -> Self {
         let Beside { extended_model, report } = beside;
         let date = &provenance.date;
-        Self { schema: SCHEMA, finding: Said(finding), extended_model, report, provenance, date }
+        let (schema, finding, more) = (SCHEMA, Said(finding), serde_json::Map::new());
+        Self { schema, finding, extended_model, report, more, provenance, date }
+    }
+
+    /// The same with a further key.
+    ///
+    /// # Errors
+    ///
+    /// If the value cannot be a document.
+    pub fn with(mut self, key: &str, value: &impl Serialize) -> Result<Self, serde_json::Error> {
+        self.more.insert(key.into(), serde_json::to_value(value)?);
+        Ok(self)
     }
 
     /// Its text, with a line break at the end.

@@ -1,0 +1,28 @@
+//! The verdict of a model check.
+
+use serde_json::{Value, json};
+
+use super::diagnosis::cause_document;
+use crate::diagnose::Checked;
+
+/// A check at a level between 0 and 1: `rejected` is null where somebody stopped it.
+///
+/// # Errors
+///
+/// If a cause has no JSON, which only happens to keys that are no text.
+pub fn checked(checked: &Checked, level: f64) -> Result<Value, serde_json::Error> {
+    let faults = checked.data_faults.iter().map(cause_document).collect::<Result<Vec<_>, _>>()?;
+    let mut document = json!({
+        "schema": 1,
+        "rejected": checked.p_value.map(|p| p < level),
+        "p_value": checked.p_value,
+        "level": level,
+        "first_cause": checked.first_cause.as_ref().map(cause_document).transpose()?,
+        "data_faults": faults,
+        "data_rejected": checked.rejects_data(),
+    });
+    if checked.interrupted {
+        document["interrupted"] = json!(true);
+    }
+    Ok(document)
+}
