@@ -28,7 +28,7 @@ def metadata(project: dict, version: str) -> str:
         f"Summary: {project['description']}",
         f"Requires-Python: {project['requires-python']}",
         f"License-Expression: {project['license']}",
-        *(f"License-File: {path.name}" for path in licences()),
+        *(f"License-File: licences/{path.name}" for path in licences()),
         *(f"Requires-Dist: {needed}" for needed in project["dependencies"]),
     ]
     for extra, needs in project["optional-dependencies"].items():
@@ -39,7 +39,7 @@ def metadata(project: dict, version: str) -> str:
 
 
 def licences() -> list:
-    return sorted(HERE.glob("LICENSE-*"))
+    return sorted(HERE.glob("licences/*"))
 
 
 def main(library: Path, folder: Path) -> Path:
@@ -53,7 +53,7 @@ def main(library: Path, folder: Path) -> Path:
     files[f"{info}/METADATA"] = metadata(project, version).encode()
     files[f"{info}/WHEEL"] = f"Wheel-Version: 1.0\nGenerator: wheel.py\nRoot-Is-Purelib: false\nTag: {TAG}\n".encode()
     for path in licences():
-        files[f"{info}/licenses/{path.name}"] = path.read_bytes()
+        files[f"{info}/licenses/licences/{path.name}"] = path.read_bytes()
     record = []
     for name, content in files.items():
         digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()

@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::list;
 
 /// Schemas of what commands answer, in the order of the book.
-const SCHEMAS: [(&str, &str); 12] = [
+const SCHEMAS: [(&str, &str); 13] = [
     ("diagnosis", include_str!("../../docs/schema/diagnosis.json")),
     ("simulate", include_str!("../../docs/schema/simulate.json")),
     ("estimate", include_str!("../../docs/schema/estimate.json")),
@@ -21,6 +21,7 @@ const SCHEMAS: [(&str, &str); 12] = [
     ("export", include_str!("../../docs/schema/export.json")),
     ("models", include_str!("../../docs/schema/models.json")),
     ("effects", include_str!("../../docs/schema/effects.json")),
+    ("answers", include_str!("../../docs/schema/answers.json")),
     ("error", include_str!("../../docs/schema/error.json")),
 ];
 

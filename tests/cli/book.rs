@@ -216,6 +216,13 @@ fn the_reference_has_every_command_effect_and_field() {
         }
     }
     let fields = page("json.md");
+    for entry in std::fs::read_dir(docs().join("schema")).unwrap().map(Result::unwrap) {
+        let name = entry.path().file_stem().unwrap().to_str().unwrap().to_string();
+        assert!(
+            fields.contains(&format!("\n## {name}\n")),
+            "{name} is missing in src/cli/reference.rs"
+        );
+    }
     for field in ["causes[].parameters[].value", "metrics.*.fit_percent", "error.hint"] {
         assert!(fields.contains(&format!("| `{field}` |")), "{field}\n{fields}");
     }
