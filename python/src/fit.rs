@@ -7,7 +7,7 @@ use lacuna::data::Record;
 use lacuna::evaluate::{Init, Simulation, want};
 use lacuna::file::{Document, Format, to_toml_with};
 use lacuna::report::documents::{Fitted, fitted, scores};
-use lacuna::report::{Shown, TrainingReport};
+use lacuna::report::{ReadBack, Shown, TrainingReport};
 use lacuna::system::System;
 use lacuna::train::{Ended, Epoch, Follow, Recipe, ablate, warnings};
 use lacuna::watch::Watch;
@@ -124,6 +124,11 @@ fn trained(
     let mut report = TrainingReport::of(&fit, &outputs, &training.validation.lengths);
     let mut remarks = vec![started.to_string()];
     remarks.extend(parts.iter().map(ToString::to_string));
+    let first = data.train.first();
+    let read = first.map_or(Ok(vec![]), |record| ReadBack::of(&fit.model, record))?;
+    let disguise = first.map_or(Ok(None), |record| fit.model.disguise(record))?;
+    remarks.extend(read.iter().map(ReadBack::sentence));
+    remarks.extend(disguise.iter().map(ToString::to_string));
     remarks.extend(warnings(&fit).into_iter().map(|text| format!("Warning: {text}")));
     for text in &remarks {
         report = report.noting(text);
@@ -152,8 +157,10 @@ fn trained(
         report = report.showing(Shown { record, baseline: &baseline, run: &run });
     }
     let is_test = data.test.is_some();
-    let document =
+    let mut document =
         fitted(&Fitted { fit: &fit, parts: &parts, outputs: &outputs, scores: &found, is_test });
+    document["read_back"] = read.iter().map(ReadBack::document).collect();
+    document["parameters_in_disguise"] = serde_json::json!(disguise);
     let header = [format!("Fitted by `lacuna.fit`: the best of {} epochs.", fit.history.len() - 1)];
     let texts = BTreeMap::from([
         ("report.html".into(), report.html()),

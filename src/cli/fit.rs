@@ -1,7 +1,6 @@
 //! `lacuna fit`.
 
 mod progress;
-mod readback;
 
 use std::fmt::Write as _;
 use std::fs;
@@ -23,8 +22,8 @@ use lacuna::report::{Shown, TrainingReport};
 use lacuna::system::System;
 use lacuna::train::{Ablation, Checkpoint, Disguise, Ended, Epoch, Fit, Recipe, ablate, warnings};
 
+use lacuna::report::ReadBack;
 use progress::{Following, Progress};
-use readback::ReadBack;
 
 /// Share of the data that is kept for validation where no record is given for it.
 const VALIDATION: f64 = 0.2;

@@ -1,6 +1,6 @@
 //! Turns results into one HTML file that needs nothing else.
 
-use lacuna_core::{data, digits, effect, evaluate, file, look, system};
+use lacuna_core::{data, digits, effect, evaluate, file, look, model, register, system};
 use lacuna_diagnose as diagnose;
 use lacuna_estimate as estimate;
 use lacuna_learn::train;
@@ -23,6 +23,7 @@ mod overlay;
 mod page;
 mod parameters;
 mod provenance;
+mod read_back;
 pub mod sentences;
 mod signals;
 mod svg;
@@ -40,6 +41,7 @@ pub use figure::{Figure, Role, Scale};
 pub use missing::MissingReport;
 pub use page::{Cell, Page, share};
 pub use provenance::{FileUsed, Provenance};
+pub use read_back::ReadBack;
 
 pub use learned::LearnedCurve;
 pub use training::{Shown, TrainingReport};

@@ -16,5 +16,6 @@ pub fn simulated(run: &Simulation) -> Value {
         "init_samples": run.init_samples,
         "initial_state": initial,
         "diverged_at": run.diverged_at,
+        "horizon": Value::Null,
     })
 }

@@ -5,12 +5,13 @@ use std::fmt::Write as _;
 
 use serde_json::{Value, json};
 
-use lacuna::data::Record;
-use lacuna::digits::number;
-use lacuna::estimate::law::{Candidate, Pairs, Reading, read};
-use lacuna::register;
-use lacuna::report::LearnedCurve;
-use lacuna::train::{Added, Augmented, Contribution, Coordinate, TrainError};
+use super::learned::LearnedCurve;
+use crate::data::Record;
+use crate::digits::number;
+use crate::estimate::law::{Candidate, Pairs, Part, Reading, read};
+use crate::model::Signal;
+use crate::register;
+use crate::train::{Added, Augmented, Contribution, Coordinate, TrainError};
 
 /// Laws that are listed.
 const LISTED: usize = 5;
@@ -26,6 +27,10 @@ pub struct ReadBack {
 impl ReadBack {
     /// Reads the learned part of a model along a record: one entry for what enters the states, and
     /// one for each output that something is added to.
+    ///
+    /// # Errors
+    ///
+    /// A record that the model cannot be run along.
     pub fn of(model: &Augmented, record: &Record) -> Result<Vec<Self>, TrainError> {
         let Some(contribution) = model.added(record)? else { return Ok(vec![]) };
         let library: Vec<_> = register::effects()
@@ -116,7 +121,7 @@ impl ReadBack {
     /// The learned term against its coordinate, as the report draws it.
     pub fn curve(&self) -> Option<LearnedCurve> {
         let (coordinate, reading) = self.coordinates.first()?;
-        let text = |signal: &lacuna::model::Signal| (signal.name.clone(), signal.unit.clone());
+        let text = |signal: &Signal| (signal.name.clone(), signal.unit.clone());
         let points = reading.curve.iter().map(|d| (d.z, d.w - 2.0 * d.band, d.w + 2.0 * d.band));
         Some(LearnedCurve {
             coordinate: text(&coordinate.signal),
@@ -141,7 +146,7 @@ fn named(law: &Candidate) -> String {
 }
 
 fn law(law: &Candidate) -> Value {
-    let part = |part: &lacuna::estimate::law::Part| {
+    let part = |part: &Part| {
         let knobs = part.law.card().knobs.into_iter().filter(|knob| knob.value.is_finite());
         let parameters: serde_json::Map<String, Value> =
             knobs.map(|knob| (knob.name.to_string(), json!(knob.value))).collect();
