@@ -23,7 +23,7 @@
 //! | to | modules |
 //! | --- | --- |
 //! | read and make records | [`data`], [`look`] |
-//! | describe a machine | [`file`] (a model as TOML or JSON), [`model`] (a type of one's own: [`Physics`](model::Physics)), [`plugins::systems`] |
+//! | describe a machine | [`mod@file`] (a model as TOML or JSON), [`model`] (a type of one's own: [`Physics`](model::Physics)), [`plugins::systems`] |
 //! | attach an effect to it | [`effect`], [`system`], [`plugins`] |
 //! | simulate and compare | [`evaluate`] |
 //! | find parameters and linear models | [`estimate`] |
