@@ -9,7 +9,7 @@ use lacuna::file::{Format, parse};
 use lacuna::system::System;
 use lacuna::train::{Augmented, Checkpoint, Ended, Epoch, Fit, GroupKind, Recipe, ablate};
 
-fn system(text: &str) -> System {
+pub fn system(text: &str) -> System {
     parse(text, "model.toml", Format::Toml).unwrap_or_else(|e| panic!("{}", e.pretty()))
 }
 
@@ -22,6 +22,11 @@ const HARDENING: &str =
 
 /// A record of a system with a little noise.
 fn record(truth: &System, samples: usize, seed: u64) -> Record {
+    noisy(truth, samples, seed, 1e-3)
+}
+
+/// A record of a system with noise of this deviation in m.
+pub fn noisy(truth: &System, samples: usize, seed: u64, noise: f64) -> Record {
     let (mut random, mut u) = (Random::new(seed), 0.0);
     let inputs = (0..samples).map(|k| {
         if k % 5 == 0 {
@@ -31,7 +36,7 @@ fn record(truth: &System, samples: usize, seed: u64) -> Record {
     });
     let drive = Record::new(0.05).input("u [N]", inputs.collect::<Vec<f64>>()).unwrap();
     let clean = Simulation::of(truth, &drive, Init::Samples(0)).unwrap().outputs.swap_remove(0).1;
-    let noisy: Vec<f64> = clean.iter().map(|y| y + 1e-3 * random.normal()).collect();
+    let noisy: Vec<f64> = clean.iter().map(|y| y + noise * random.normal()).collect();
     drive.output("y [m]", noisy).unwrap()
 }
 

@@ -4,15 +4,12 @@
 use lacuna::data::{Random, Record};
 use lacuna::estimate::law::{Pairs, read};
 use lacuna::evaluate::{Init, Simulation};
-use lacuna::file::{Format, parse};
 use lacuna::likelihood::{NoiseModel, Predictor};
 use lacuna::model::{Quantity, Signal};
 use lacuna::system::System;
 use lacuna::train::{Fit, Recipe};
 
-fn system(text: &str) -> System {
-    parse(text, "model.toml", Format::Toml).unwrap_or_else(|e| panic!("{}", e.pretty()))
-}
+use super::learned_part::{noisy, system};
 
 fn library() -> Vec<(String, Box<dyn lacuna::effect::CandidateEffect>)> {
     let all = lacuna::register::effects().into_iter();
@@ -24,17 +21,7 @@ const MODEL: &str =
 
 /// A record of a system with a little noise.
 fn record(truth: &System, samples: usize, seed: u64) -> Record {
-    let (mut random, mut u) = (Random::new(seed), 0.0);
-    let inputs = (0..samples).map(|k| {
-        if k % 5 == 0 {
-            u = 20.0 * random.normal();
-        }
-        u
-    });
-    let drive = Record::new(0.05).input("u [N]", inputs.collect::<Vec<f64>>()).unwrap();
-    let clean = Simulation::of(truth, &drive, Init::Samples(0)).unwrap().outputs.swap_remove(0).1;
-    let noisy: Vec<f64> = clean.iter().map(|y| y + 1e-4 * random.normal()).collect();
-    drive.output("y [m]", noisy).unwrap()
+    noisy(truth, samples, seed, 1e-4)
 }
 
 /// A small network beside the model, trained on what `truth` does.

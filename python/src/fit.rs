@@ -157,10 +157,10 @@ fn trained(
         report = report.showing(Shown { record, baseline: &baseline, run: &run });
     }
     let is_test = data.test.is_some();
-    let mut document =
-        fitted(&Fitted { fit: &fit, parts: &parts, outputs: &outputs, scores: &found, is_test });
-    document["read_back"] = read.iter().map(ReadBack::document).collect();
-    document["parameters_in_disguise"] = serde_json::json!(disguise);
+    let (parts, disguise) = (&parts, disguise.as_ref());
+    let (read, outputs, scores) = (&read, &outputs, &found);
+    let of = Fitted { fit: &fit, parts, read, disguise, outputs, scores, is_test };
+    let document = fitted(&of);
     let header = [format!("Fitted by `lacuna.fit`: the best of {} epochs.", fit.history.len() - 1)];
     let texts = BTreeMap::from([
         ("report.html".into(), report.html()),

@@ -181,10 +181,9 @@ impl Done<'_> {
             look.result(&text);
         }
         look.say(&format!("Wrote {} into {}", FILES.join(", "), out.display()));
-        let (parts, outputs) = (self.parts, self.want);
-        let mut document = fitted(&Fitted { fit, parts, outputs, scores, is_test });
-        document["read_back"] = self.read.iter().map(ReadBack::document).collect();
-        document["parameters_in_disguise"] = json!(self.disguise);
+        let Self { parts, read, disguise, want: outputs, .. } = *self;
+        let of = Fitted { fit, parts, read, disguise, outputs, scores, is_test };
+        let mut document = fitted(&of);
         for (key, name) in ["model", "weights", "history", "report"].iter().zip(FILES) {
             document[*key] = json!(name);
         }

@@ -17,6 +17,7 @@ use crate::train::{Added, Augmented, Contribution, Coordinate, TrainError};
 const LISTED: usize = 5;
 
 /// A learned part read along a record.
+#[derive(Debug)]
 pub struct ReadBack {
     added: Added,
     others: Vec<(String, f64)>,

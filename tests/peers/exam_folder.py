@@ -1,5 +1,6 @@
 """What the adapters share: an exam's folder, records, a library of effects at places, answers."""
 
+import argparse
 import csv
 import json
 import pathlib
@@ -67,6 +68,17 @@ def simulate(lacuna, model, case, measured=True):
         return columns(out)
 
 
-def write(path, tool, answers):
+def take(about, tool, answer):
+    """An adapter as a program: `answer` gives the answer to a case, or None where it has none."""
+    parser = argparse.ArgumentParser(description=about.splitlines()[0])
+    parser.add_argument("exam")
+    parser.add_argument("answers")
+    parser.add_argument("--cases", default="")
+    parser.add_argument("--lacuna", default="lacuna")
+    arguments = parser.parse_args()
+    cases = [Case(arguments.exam, number) for number in numbers(arguments.cases, arguments.exam)]
+    given = [answer(case, arguments.lacuna) if case.equations() else None for case in cases]
+    answers = [one for one in given if one is not None]
     document = {"schema": 1, "tool": tool, "answers": answers}
-    pathlib.Path(path).write_text(json.dumps(document, indent=2) + "\n")
+    pathlib.Path(arguments.answers).write_text(json.dumps(document, indent=2) + "\n")
+    print(f"{len(answers)} cases answered, {len(given) - len(answers)} left")

@@ -8,7 +8,6 @@ step of the model, from the true states, does not explain of the next ones is, c
 sum of library functions of the coordinates (Brunton, Proctor and Kutz, PNAS 113, 2016), at most five.
 """
 
-import argparse
 import copy
 import math
 import re
@@ -18,7 +17,7 @@ import tomllib
 import numpy as np
 import pysindy
 
-from exam_folder import Case, numbers, simulate, write
+from exam_folder import simulate, take
 
 FUNCTIONS = {name: getattr(np, name) for name in "sin cos tan sinh cosh tanh exp log sqrt abs sign".split()}
 FUNCTIONS |= {"min": np.minimum, "max": np.maximum, "pow": np.power, "pi": math.pi}
@@ -113,24 +112,5 @@ def answer(case, lacuna):
     return {"case": case.number, "verdict": verdict, "causes": causes, "seconds": time.time() - began}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("exam")
-    parser.add_argument("answers")
-    parser.add_argument("--cases", default="")
-    parser.add_argument("--lacuna", default="lacuna")
-    arguments = parser.parse_args()
-    answers, left = [], 0
-    for number in numbers(arguments.cases, arguments.exam):
-        case = Case(arguments.exam, number)
-        given = answer(case, arguments.lacuna) if case.equations() else None
-        if given is None:
-            left += 1
-        else:
-            answers.append(given)
-    write(arguments.answers, f"PySINDy {pysindy.__version__}, true states", answers)
-    print(f"{len(answers)} cases answered, {left} left")
-
-
 if __name__ == "__main__":
-    main()
+    take(__doc__, f"PySINDy {pysindy.__version__}, true states", answer)

@@ -7,13 +7,12 @@ Each candidate is an effect at a place at one size; its response is what a littl
 outputs. Forward selection by the Bayesian information criterion (Efroymson 1960; Schwarz 1978).
 """
 
-import argparse
 import copy
 import time
 
 import numpy as np
 
-from exam_folder import Case, numbers, simulate, write
+from exam_folder import simulate, take
 
 LITTLE = 0.02  # of what a place carries
 
@@ -110,24 +109,5 @@ def answer(case, lacuna):
     return {"case": case.number, "verdict": verdict, "causes": causes, "seconds": time.time() - began}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("exam")
-    parser.add_argument("answers")
-    parser.add_argument("--cases", default="")
-    parser.add_argument("--lacuna", default="lacuna")
-    arguments = parser.parse_args()
-    answers, left = [], 0
-    for number in numbers(arguments.cases, arguments.exam):
-        case = Case(arguments.exam, number)
-        given = answer(case, arguments.lacuna) if case.equations() else None
-        if given is None:
-            left += 1
-        else:
-            answers.append(given)
-    write(arguments.answers, "stepwise regression", answers)
-    print(f"{len(answers)} cases answered, {left} left")
-
-
 if __name__ == "__main__":
-    main()
+    take(__doc__, "stepwise regression", answer)

@@ -4,7 +4,8 @@ use serde_json::{Map, Value, json};
 
 use crate::data::Record;
 use crate::evaluate::Metrics;
-use crate::train::{Ablation, Ended, Fit, Run, warnings};
+use crate::read_back::ReadBack;
+use crate::train::{Ablation, Disguise, Ended, Fit, Run, warnings};
 
 /// What a training's document is made of.
 #[derive(Debug, Clone, Copy)]
@@ -13,6 +14,10 @@ pub struct Fitted<'a> {
     pub fit: &'a Fit,
     /// What the parts of the model are worth.
     pub parts: &'a [Ablation],
+    /// What the learned part is read back as.
+    pub read: &'a [ReadBack],
+    /// How much of it the model's own parameters could have done.
+    pub disguise: Option<&'a Disguise>,
     /// Name and unit of every output.
     pub outputs: &'a [(String, String)],
     /// Baseline and trained model, output by output, on the record that is shown.
@@ -43,6 +48,8 @@ pub fn fitted(of: &Fitted<'_>) -> Value {
         "validation": last.and_then(|epoch| epoch.score.as_ref()),
         "before": { which: Value::Object(before) },
         "after": { which: Value::Object(after) },
+        "read_back": of.read.iter().map(ReadBack::document).collect::<Vec<_>>(),
+        "parameters_in_disguise": of.disguise,
     });
     if fit.ended == Ended::Asked {
         document["interrupted"] = json!(true);
