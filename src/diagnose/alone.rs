@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use super::cause::Cause;
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
-use super::finding::Verdict;
+use super::finding::{Alone, Verdict};
 use super::records::name_of;
 use super::searched::Searched;
 use super::shown::InRecord;
@@ -18,16 +17,6 @@ use crate::watch::Watch;
 /// Records that are asked on their own, at most, and samples that each needs.
 const RECORDS: usize = 8;
 const SAMPLES: usize = 400;
-
-/// What one of several records shows on its own, where all of them together name no cause.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Alone {
-    /// The record: its file, or its number.
-    pub record: String,
-    /// Its first cause, and what each record says of the model that is extended by all of its
-    /// causes. Values are those of this record.
-    pub cause: Cause,
-}
 
 impl Diagnosis<'_> {
     /// Asks each of several records on its own, where all together name no cause in the machine:

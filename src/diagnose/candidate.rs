@@ -3,9 +3,7 @@
 use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Role, ShapeOf};
 use crate::system::{AlsoInto, Placed, Route};
 
-/// Natural logarithms of the number of causes to choose from, and of the values that a record
-/// tells apart within the range of a number.
-const CHOICE: f64 = 5.0;
+/// Natural logarithm of the number of values that a record tells apart within the range of a number.
 pub(super) const NUMBER: f64 = 4.0;
 
 /// How a candidate is wired into a simulation.
@@ -118,25 +116,6 @@ impl Candidate {
     /// How many numbers it has free.
     pub fn unknowns(&self) -> usize {
         self.linear.len() + self.refine.len()
-    }
-
-    /// How many plain causes it counts for: a curve of unknown shape can be nearly anything, and
-    /// a learned law even more.
-    pub fn price(&self) -> usize {
-        match self.is_drawn() {
-            true if self.is_learned() => 4,
-            true => 3,
-            false => 1,
-        }
-    }
-
-    /// Natural logarithm of how many causes there are that take as much to say: it is one of some
-    /// hundred, and every number is read to a part of its range.
-    pub fn cost(&self) -> f64 {
-        match self.wire {
-            Wire::Parameter(_) => NUMBER,
-            _ => CHOICE + NUMBER * self.unknowns() as f64,
-        }
     }
 
     /// Whether its shape is not one of the library: a free curve or a learned law.

@@ -8,11 +8,11 @@ use super::certify::{either, on_test};
 use super::error::DiagnoseError;
 use super::finished::Finished;
 use super::floor::Floor;
+use super::found::SET;
 use super::naming::title_of;
 use super::problem::{Added, Grain};
 use super::profile;
 use super::score::{Scored, TestData, removed};
-use super::sets::SET;
 use super::sums::by_size;
 use super::teller::Teller;
 
@@ -62,8 +62,7 @@ impl Teller<'_, '_> {
         };
         let without = without.as_ref().unwrap_or(by.before);
         let share = removed(by.before, without, by.after, by.floors);
-        let screen = chosen.found.first.as_ref().or(chosen.found.last.as_ref());
-        let candidates = screen.map_or(MANY, |screen| screen.columns);
+        let candidates = chosen.found.first.as_ref().map_or(MANY, |screen| screen.columns);
         // all of them together do no less than one of them
         let score = own.iter().map(|&i| chosen.found.slots[i].score).fold(0.0, f64::max);
         let p_value = Some(either(on_test(without, by.after), score, candidates));

@@ -4,8 +4,8 @@ use super::dependence::DEPENDS;
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
 use super::faults::Fault;
-use super::finding::Track;
 use super::searched::Searched;
+use super::story::Track;
 use crate::data::Record;
 use crate::watch::Watch;
 

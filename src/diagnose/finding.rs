@@ -6,12 +6,13 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::alone::Alone;
 use super::cause::{Alternative, Cause, MissingForce, Withdrawn};
 use super::distortion::Distortion;
 use super::feedback::ClosedLoop;
+use super::floor::NoiseFloor;
 use super::note::Note;
 use super::regime::Regime;
+use super::story::{Moved, Track};
 use crate::evaluate::Metrics;
 use crate::system::System;
 
@@ -29,16 +30,6 @@ pub enum Verdict {
     DataFault,
 }
 
-/// Whether parameters were held or re-estimated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Track {
-    /// The baseline's parameters were held.
-    ParametersTrusted,
-    /// They were re-estimated.
-    ParametersFree,
-}
-
 /// How many of the named causes may be false.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FalseDiscovery {
@@ -53,19 +44,6 @@ pub struct FalseDiscovery {
     pub not_confirmed: Vec<String>,
 }
 
-/// A parameter that another track moved.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Moved {
-    /// Name.
-    pub name: String,
-    /// Value in the model file.
-    pub from: f64,
-    /// Value that fits.
-    pub to: f64,
-    /// Standard error.
-    pub std_error: Option<f64>,
-}
-
 /// The track that was not chosen.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct OtherTrack {
@@ -77,15 +55,6 @@ pub struct OtherTrack {
     pub parameters_moved: Vec<Moved>,
 }
 
-/// Noise of one output.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct NoiseFloor {
-    /// Standard deviation, in the output's unit.
-    pub std: f64,
-    /// How it was found.
-    pub method: String,
-}
-
 /// Figures on the estimation data and on the test data, per output.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Scores {
@@ -93,6 +62,16 @@ pub struct Scores {
     pub data: BTreeMap<String, Metrics>,
     /// On data used for nothing else.
     pub test: BTreeMap<String, Metrics>,
+}
+
+/// What one of several records shows on its own, where all of them together name no cause.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Alone {
+    /// The record: its file, or its number.
+    pub record: String,
+    /// Its first cause, and what each record says of the model that is extended by all of its
+    /// causes. Values are those of this record.
+    pub cause: Cause,
 }
 
 /// What was gained on the test data.

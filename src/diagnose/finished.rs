@@ -4,13 +4,12 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::candidate::{NUMBER, Wire};
-use super::finding::{Moved, Track};
 use super::found::Found;
 use super::note::Disturbance;
-use super::nuisance::{Key, Nuisance, PRIOR};
+use super::nuisance::{Key, Nuisance};
 use super::precision::Precision;
 use super::refit::Fitted;
+use super::story::{Moved, Track};
 use crate::model::Signals;
 
 /// Standard errors beyond which a parameter counts as moved.
@@ -78,16 +77,6 @@ impl Finished {
         self.inside.is_some()
     }
 
-    /// Whether no cause was found but what was known before: limits of the instruments.
-    pub(super) fn found_nothing(&self) -> bool {
-        self.causes() == self.fitted.model.known()
-    }
-
-    /// Whether one of its causes has no name: a free curve or a learned law.
-    pub(super) fn is_drawn(&self) -> bool {
-        self.fitted.model.added.iter().any(|added| added.cause.is_drawn())
-    }
-
     /// Standard error of one key.
     pub(super) fn error(&self, key: Key) -> Option<f64> {
         self.precision.as_ref()?.error(key)
@@ -108,44 +97,5 @@ impl Finished {
             std_error: self.error(Key::Theta(p)),
         };
         self.nuisance.free.iter().map(one).collect()
-    }
-
-    /// Causes that are no parameters.
-    pub(super) fn structural(&self) -> usize {
-        let causes = self.fitted.model.added.iter().skip(self.fitted.model.known());
-        causes.filter(|added| !matches!(added.cause.wire, Wire::Parameter(_))).count()
-    }
-
-    /// Natural logarithm of how many stories there are that are as long.
-    pub(super) fn cost(&self) -> f64 {
-        self.fitted.model.cost() + NUMBER * self.count_moved() as f64
-    }
-
-    /// Natural logarithm of how much smaller the region is in which the free parameters now are
-    /// than the one in which they were expected (Laplace's approximation).
-    pub(super) fn settled(&self) -> f64 {
-        let free = &self.nuisance.free;
-        let keys: Vec<Key> = free.iter().map(|&(p, _)| Key::Theta(p)).collect();
-        let own = self.precision.as_ref().and_then(|precision| precision.between(&keys));
-        let Some(own) = own else { return 0.0 };
-        let spread = |&(_, from): &(usize, f64)| PRIOR * if from == 0.0 { 1.0 } else { from.abs() };
-        let spread = DVector::from_iterator(free.len(), free.iter().map(spread));
-        let off = free.iter().map(|&(p, from)| self.fitted.model.theta[p] - from);
-        let off = DVector::from_iterator(free.len(), off).component_div(&spread);
-        let own = own.component_div(&(&spread * spread.transpose()));
-        own.cholesky()
-            .map_or(0.0, |c| 0.5 * off.norm_squared() - c.l().diagonal().map(f64::ln).sum())
-    }
-
-    /// Parameters moved; along a ridge it is one, whichever.
-    pub(super) fn count_moved(&self) -> usize {
-        self.moved.len().max(usize::from(self.moved_together))
-    }
-
-    /// How much it takes: causes plus parameters moved.
-    pub(super) fn price(&self) -> usize {
-        let causes = self.fitted.model.added.iter();
-        let causes: usize = causes.map(|added| added.cause.price()).sum();
-        causes + self.count_moved()
     }
 }

@@ -1,8 +1,19 @@
 //! How much of the output is noise, found without the model that is being scored.
 
+use serde::Serialize;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::statistics::deviation;
+
+/// Noise of one output.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NoiseFloor {
+    /// Standard deviation, in the output's unit.
+    pub std: f64,
+    /// How it was found.
+    pub method: String,
+}
 
 /// Past values of the residual that predict the next one.
 const PAST: usize = 16;

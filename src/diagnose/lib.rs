@@ -7,11 +7,9 @@ use lacuna_core::{
 use lacuna_likelihood as likelihood;
 use lacuna_plugins as plugins;
 
-mod accept;
 mod acts;
 mod adequacy;
 mod alone;
-mod believe;
 mod candidate;
 mod cause;
 mod causes;
@@ -24,21 +22,22 @@ mod curves;
 mod dependence;
 mod diagnosis;
 mod distortion;
+mod doubt;
 mod error;
 mod evidence;
-mod exchange;
 mod excitation;
 mod faults;
+mod features;
 mod feedback;
 mod finding;
 mod finished;
+mod fitted;
 mod floor;
 mod found;
 mod gain;
 mod grain;
 mod innovations;
-mod joint;
-mod learned;
+mod keys;
 mod library;
 mod limits;
 mod measure;
@@ -51,7 +50,6 @@ mod nominal;
 mod note;
 mod nuisance;
 mod overlap;
-mod pairs;
 mod places;
 mod plan;
 mod posterior;
@@ -60,34 +58,30 @@ mod prepared;
 mod probes;
 mod problem;
 mod profile;
-mod prune;
 mod readback;
 mod records;
 mod refit;
 mod regime;
-mod rejoin;
 mod remarks;
 mod remembered;
 mod resembles;
 mod resolution;
 mod restart;
 mod ridge;
-mod scan;
+mod run;
 mod score;
 mod screen;
-mod search;
 mod searched;
-mod sets;
-mod shapeless;
 mod shown;
 mod sketch;
 mod smooth;
 mod spikes;
-mod split;
-mod stage;
+mod story;
 mod stretches;
 mod sums;
+mod supposed;
 mod surface;
+mod tell;
 mod teller;
 mod tensor;
 mod together;
@@ -96,7 +90,6 @@ mod withdrawn;
 
 pub use crate::watch::Watch;
 pub use acts::ActsWhere;
-pub use alone::Alone;
 pub use cause::{
     Alternative, Cause, ColumnFault, ExplainedBy, FoundShape, LawPart, MissingForce, Onset, Site,
     Value, Withdrawn, Wording,
@@ -107,10 +100,12 @@ pub use distortion::{AtLines, Distortion, distortion};
 pub use error::DiagnoseError;
 pub use feedback::ClosedLoop;
 pub use finding::{
-    Curve, FalseDiscovery, Finding, Gain, Left, Moved, NoiseFloor, NotFound, OtherTrack, Ranked,
-    RecordFacts, Scores, Series, Track, Verdict,
+    Alone, Curve, FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts,
+    Scores, Series, Verdict,
 };
+pub use floor::NoiseFloor;
 pub use note::{Disturbance, Disturbs, Note};
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
 pub use regime::Regime;
 pub use shown::InRecord;
+pub use story::{Moved, Track};

@@ -11,16 +11,6 @@ use crate::effect::{
 use crate::register;
 use crate::system::{Origin, Route};
 
-/// How causes are searched for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub(crate) enum Method {
-    /// One cause after the other, by scores on the part that chooses.
-    #[default]
-    Stepwise,
-    /// Sets of causes by their posterior probability.
-    Posterior,
-}
-
 /// Which effects and parameters may be causes.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Allowed {
@@ -30,8 +20,6 @@ pub(crate) struct Allowed {
     pub without: Vec<String>,
     /// Parameters that are held.
     pub fixed: Vec<String>,
-    /// How they are searched for.
-    pub method: Method,
     /// Whether noise may be inside the plant.
     pub noise_inside: bool,
 }

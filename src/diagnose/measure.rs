@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::problem::{Part, Problem};
-use crate::statistics::{dot, mixture, odds, rms};
+use crate::statistics::{mixture, rms};
 
 impl Problem<'_> {
     /// Sets the outputs' scales to what this simulation leaves of each.
@@ -19,6 +19,11 @@ impl Problem<'_> {
                 self.scale[o] = left;
             }
         }
+    }
+
+    /// Mean square of the residual on a part, in units of the scales.
+    pub fn mean_square(&self, yhat: &[Vec<f64>], part: Part) -> f64 {
+        rms(&self.residual(yhat, part)).powi(2)
     }
 
     /// Samples that count in a part.
@@ -94,29 +99,6 @@ impl Problem<'_> {
         self.between(a, b, part).map_or(0.0, |(ff, fr)| mixture(&ff, &fr))
     }
 
-    /// How much likelier b makes the part that chooses than a does, if what b leaves is white
-    /// noise, as a normal score: the root of twice the logarithm of the ratio. Nothing was fitted
-    /// to that part, so that chance passes a score as seldom as it passes that of a normal.
-    pub fn likelier(&self, a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
-        let each = |yhat: &[Vec<f64>], part: Part| -> Vec<f64> {
-            let r = self.residual(yhat, part);
-            r.chunks((r.len() / self.y.len().max(1)).max(1)).map(|r| dot(r, r)).collect()
-        };
-        let per_sample = self.samples(Part::All).count() as f64;
-        let sums = each(a, Part::Choose).into_iter().zip(each(b, Part::Choose));
-        let ratio: f64 = sums
-            .zip(each(b, Part::All))
-            .map(|((a, b), left)| (a - b) * per_sample / left.max(f64::MIN_POSITIVE))
-            .sum();
-        ratio.max(0.0).sqrt()
-    }
-
-    /// How much likelier all data are if b is right than if a is, as a natural logarithm;
-    /// `white`: what they leave is.
-    pub fn odds(&self, a: &[Vec<f64>], b: &[Vec<f64>], white: bool) -> f64 {
-        self.between(a, b, Part::All).map_or(0.0, |(ff, fr)| odds(&ff, &fr, white))
-    }
-
     /// What b changes of a, squared and times the residual of a; `None` where they are the same.
     fn between(&self, a: &[Vec<f64>], b: &[Vec<f64>], part: Part) -> Option<(Vec<f64>, Vec<f64>)> {
         let ra = self.residual(a, part);
@@ -125,10 +107,5 @@ impl Problem<'_> {
         let ff = self.per_sample(&f, &f);
         let same = ff.iter().sum::<f64>() < 1e-24 * ra.iter().map(|r| r * r).sum::<f64>();
         (!same).then(|| (ff, self.per_sample(&f, &ra)))
-    }
-
-    /// Mean square of the residual on a part, in units of the scales.
-    pub fn mean_square(&self, yhat: &[Vec<f64>], part: Part) -> f64 {
-        rms(&self.residual(yhat, part)).powi(2)
     }
 }

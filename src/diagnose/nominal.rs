@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use super::dependence::Features;
+use super::features::Features;
 use super::problem::{Grain, Model, Part, Problem};
 use crate::effect::View;
 use crate::model::probe::{Along, Point, slope};
@@ -117,7 +117,7 @@ impl Nominal {
 
     /// What residuals of this record are regressed on; `None` where it is too short.
     pub fn features(&self, problem: &Problem<'_>) -> Option<&Features> {
-        self.features.get_or_init(|| Features::new(problem, self)).as_ref()
+        self.features.get_or_init(|| Features::new(problem, |entry| self.series(entry))).as_ref()
     }
 
     /// The factor between the columns of two targets that are parallel everywhere:

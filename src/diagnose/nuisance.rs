@@ -2,22 +2,12 @@
 //! where they are free.
 
 use super::candidate::{Candidate, Wire};
+pub(crate) use super::keys::{Key, get, set};
 use super::nominal::Nominal;
 use super::problem::{Grain, Job, Model, Part, Problem, Simulated, Span};
 use super::together::Together;
 use crate::optimise::Unknown;
 use crate::statistics::add_to_basis;
-
-/// One number of a model that can be moved.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Key {
-    /// Initial state: segment, state.
-    Start(usize, usize),
-    /// Parameter.
-    Theta(usize),
-    /// Knob of an added cause.
-    Knob(usize, usize),
-}
 
 /// Priors of re-estimated parameters: this share of their value.
 pub(super) const PRIOR: f64 = 0.15;
@@ -159,23 +149,5 @@ impl Nuisance {
             add_to_basis(&mut basis, column);
         }
         basis
-    }
-}
-
-/// The value of a key.
-pub(crate) fn get(model: &Model, key: Key) -> f64 {
-    match key {
-        Key::Start(segment, i) => model.starts[segment][i],
-        Key::Theta(p) => model.theta[p],
-        Key::Knob(a, i) => model.added[a].knobs[i],
-    }
-}
-
-/// Sets the value of a key.
-pub(crate) fn set(model: &mut Model, key: Key, value: f64) {
-    match key {
-        Key::Start(segment, i) => model.starts[segment][i] = value,
-        Key::Theta(p) => model.theta[p] = value,
-        Key::Knob(a, i) => model.added[a].knobs[i] = value,
     }
 }

@@ -2,13 +2,9 @@
 
 use nalgebra::DMatrix;
 
-use super::candidate::Wire;
-use super::finished::Finished;
+use super::fitted::Fitted;
 use super::nuisance::{Key, Nuisance};
-use super::problem::{Added, Problem};
-use super::refit::{Fitted, Refit, refit};
-use super::track::Tracks;
-use crate::optimise::Settings;
+use super::problem::Problem;
 use crate::statistics;
 
 /// What is known of everything that moved in a fit.
@@ -65,32 +61,5 @@ impl Precision {
         let places: Vec<usize> = keys.iter().map(at).collect::<Option<_>>()?;
         let n = places.len();
         Some(DMatrix::from_fn(n, n, |i, j| self.covariance[(places[i], places[j])]))
-    }
-}
-
-impl Tracks<'_, '_> {
-    /// What is known of a story's numbers where it says itself that a parameter of the model is
-    /// wrong: those that it still trusts may be as well, and what it found makes up for them.
-    pub(super) fn doubting(&self, story: Finished) -> Finished {
-        let model = &story.fitted.model;
-        let wire = |added: &Added| match added.cause.wire {
-            Wire::Parameter(p) => Some(p),
-            _ => None,
-        };
-        let named: Vec<usize> = model.added.iter().filter_map(wire).collect();
-        let is_off = !named.is_empty() || !story.moved.is_empty();
-        let is_alone = model.added.len() - model.known() + story.moved.len() < 2;
-        let held = Nuisance { free: vec![], ..story.nuisance.clone() };
-        let mut all = held.with_parameters(self.problem, &self.allowed.fixed);
-        all.free.retain(|(p, _)| !named.contains(p));
-        if !is_off || is_alone || all.free.len() <= story.nuisance.free.len() {
-            return story;
-        }
-        let how = Refit::last();
-        // derivatives where it stands
-        let how = Refit { settings: Settings { iterations: 1, ..how.settings }, ..how };
-        let fitted = refit(self.problem, &all, std::slice::from_ref(model), how).swap_remove(0);
-        let doubted = fitted.and_then(|fitted| Precision::new(self.problem, &all, &fitted));
-        Finished { precision: doubted.or(story.precision), ..story }
     }
 }

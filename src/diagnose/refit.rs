@@ -5,12 +5,12 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::evidence::Whitener;
+pub(crate) use super::fitted::{Fitted, Refit};
 use super::nuisance::{Key, Nuisance, set};
-use super::problem::{Grain, Job, Model, Part, Problem, Simulated, Span};
+use super::problem::{Job, Model, Problem, Simulated};
 use super::restart::restarted;
 use super::together::Together;
 use crate::optimise::{Levenberg, Settings};
-use crate::statistics::dot;
 
 /// Segments from which on their starts are tried anew.
 pub(super) const MANY: usize = 8;
@@ -21,56 +21,6 @@ const WORTH: f64 = 0.97;
 
 /// Fall of twice the logarithm of the likelihood below which an iteration was the last one.
 const MATTERS: f64 = 0.02;
-
-/// How refits are run.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Refit {
-    pub settings: Settings,
-    pub grain: Grain,
-    /// Fit to the whole record instead of the part that is fitted.
-    pub whole: bool,
-}
-
-impl Refit {
-    /// For choosing between candidates.
-    pub fn search() -> Self {
-        let settings = Settings { iterations: 12, tolerance: 1e-4, difference: 2e-3 };
-        Self { settings, grain: Grain::Coarse, whole: false }
-    }
-
-    /// For the final numbers.
-    pub fn last() -> Self {
-        let settings = Settings { iterations: 25, tolerance: 1e-7, difference: 1e-4 };
-        Self { settings, grain: Grain::Fine, whole: true }
-    }
-
-    /// What is fitted.
-    pub fn part(self) -> Part {
-        if self.whole { Part::All } else { Part::Fit }
-    }
-
-    /// What has to be simulated for that.
-    pub fn span(self) -> Span {
-        if self.whole { Span::Whole } else { Span::Fit }
-    }
-}
-
-/// A fitted model.
-#[derive(Debug, Clone)]
-pub(crate) struct Fitted {
-    pub model: Model,
-    /// Keys that moved, and the derivatives of the residuals by them.
-    pub keys: Vec<Key>,
-    pub columns: Vec<Vec<f64>>,
-    pub residuals: Vec<f64>,
-}
-
-impl Fitted {
-    /// Sum of squared residuals.
-    pub fn squares(&self) -> f64 {
-        dot(&self.residuals, &self.residuals)
-    }
-}
 
 /// Fits many models at once, each from where it stands; `None` where a model cannot even be
 /// simulated at its start.

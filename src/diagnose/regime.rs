@@ -6,8 +6,8 @@ use std::ops::Range;
 use serde::Serialize;
 
 use super::dependence::DEPENDS;
-use super::finding::NoiseFloor;
 use super::finished::Finished;
+use super::floor::NoiseFloor;
 use super::problem::Part;
 use super::teller::Teller;
 use crate::statistics::{pieces, spread};

@@ -3,22 +3,24 @@
 use super::candidate::{Candidate, Wire};
 use super::cause::Cause;
 use super::dependence::DEPENDS;
-use super::finding::{NotFound, Track};
+use super::finding::NotFound;
 use super::finished::Finished;
 use super::note::Note;
 use super::plan::natural;
 use super::problem::Part;
+use super::story::Track;
 use super::teller::Teller;
-use crate::statistics::rms;
+use crate::statistics::{corrected_score, rms};
+
+/// Least score, as a normal one, of what a record is said to show.
+const SEEN: f64 = 3.45;
 
 impl Teller<'_, '_> {
     /// The smallest size of every candidate that would have been seen.
     pub fn not_found(&self, chosen: &Finished) -> Vec<NotFound> {
-        let Some(screen) = chosen.found.last.as_ref().or(chosen.found.first.as_ref()) else {
-            return vec![];
-        };
+        let Some(screen) = &chosen.found.first else { return vec![] };
         let left = rms(&self.problem.residual(&chosen.y, Part::Fit));
-        let bar = super::stage::gate(screen.columns);
+        let bar = corrected_score(screen.columns).max(SEEN);
         let named = |c: &Candidate| chosen.fitted.model.added.iter().any(|a| a.cause.same_cause(c));
         let mut seen: Vec<(String, String, Option<String>)> = vec![];
         let mut entries = vec![];

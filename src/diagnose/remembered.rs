@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::sync::Mutex;
 
-use super::problem::{Grain, Model, Simulated};
+use super::supposed::{Grain, Model, Simulated};
 
 /// Simulations that are kept: all trials of a stage, and what they stand on.
 const KEPT: usize = 24;

@@ -1,9 +1,9 @@
 //! Starts of many stretches, each tried anew by itself. Where errors grow, the cost of a stretch
 //! has many minima, and one stretch that is caught in a wrong one spoils the fit of all.
 
+use super::fitted::{Fitted, Refit};
 use super::nuisance::{Key, Nuisance, get, set};
 use super::problem::{Job, Model, Problem};
-use super::refit::{Fitted, Refit};
 
 /// Changes of a state that are tried, in units of its spread.
 const TRIED: [f64; 10] = [-0.3, -0.1, -0.03, -0.01, -0.003, 0.003, 0.01, 0.03, 0.1, 0.3];

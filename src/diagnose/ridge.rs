@@ -1,13 +1,15 @@
 //! Parameters that moved together along a ridge, where none of them alone has to: one of them
 //! must be named, or nothing would be.
 
-use super::finding::Track;
 use super::finished::Finished;
 use super::nuisance::Nuisance;
 use super::problem::{Grain, Model, Part};
 use super::refit::{Refit, refit};
-use super::sets::AS_GOOD;
+use super::story::Track;
 use super::track::Tracks;
+
+/// Score below which one model is as good as another.
+const AS_GOOD: f64 = 2.0;
 
 impl Tracks<'_, '_> {
     /// The same story with the one parameter moved that tells it best, if none is named yet and

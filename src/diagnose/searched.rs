@@ -2,17 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use super::alone::Alone;
 use super::cause::{Alternative, Cause, MissingForce, Withdrawn};
 use super::distortion::Distortion;
 use super::faults::Fault;
 use super::feedback::ClosedLoop;
+use super::finding::Alone;
 use super::finding::{
-    FalseDiscovery, Finding, Gain, Left, NoiseFloor, NotFound, OtherTrack, Ranked, RecordFacts,
-    Scores, Series, Track, Verdict,
+    FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores, Series,
+    Verdict,
 };
+use super::floor::NoiseFloor;
 use super::note::Note;
 use super::regime::Regime;
+use super::story::Track;
 use crate::system::System;
 
 /// What one search over records without faults ended with. Fields are those of [`Finding`].
@@ -39,6 +41,14 @@ pub(crate) struct Searched {
     pub notes: Vec<Note>,
     pub series: Series,
     pub extended: System,
+}
+
+/// What was found before it is put together.
+pub(crate) struct Looked {
+    pub searched: Searched,
+    pub faults: Vec<Fault>,
+    pub notes: Vec<Note>,
+    pub alone: Vec<Alone>,
 }
 
 /// What is known of the records beside the search.

@@ -2,7 +2,7 @@
 //! into stretches short enough to be simulated in one go, each with a start of its own (multiple
 //! shooting: Bock, 1981).
 
-use super::diagnosis::{Diagnosis, FIT, Looked, kept_from};
+use super::diagnosis::{Diagnosis, FIT, kept_from};
 use super::error::DiagnoseError;
 use super::faults::strike;
 use super::note::Note;
@@ -10,6 +10,7 @@ use super::nuisance::SEGMENTS;
 use super::prepared::Prepared;
 use super::records::firsts;
 use super::score::{Counted, TestData};
+use super::searched::Looked;
 use super::teller::Source;
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Run};

@@ -1,7 +1,7 @@
 //! Derivatives by the initial states of all segments at once: a segment's samples know nothing
 //! of another segment's start, so that one simulation moves a state in all of them.
 
-use super::nuisance::Key;
+use super::keys::Key;
 use super::problem::{Part, Problem};
 
 /// Which unknowns are moved together.

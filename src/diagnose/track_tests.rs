@@ -1,6 +1,6 @@
 use super::*;
 use crate::data::Record;
-use crate::found::Begun;
+use crate::found::Slot;
 use crate::library::library;
 use crate::prepared::Prepared;
 use crate::problem::Added;
@@ -49,12 +49,10 @@ fn what_diverges_in_the_end_loses_its_last_cause() {
         model,
         slots,
         first: None,
-        last: None,
-        dependence: 0.0,
         spikes: vec![vec![]],
         full: false,
-        given_up: false,
-        posterior: None,
+        nothing: 0.0,
+        withdrawn: vec![],
     };
     let held = Nuisance::new(&prepared.problem, &prepared.nominal);
     let Prepared { problem, nominal, start, .. } = &mut prepared;
@@ -63,20 +61,4 @@ fn what_diverges_in_the_end_loses_its_last_cause() {
     let finished = tracks.finish(Track::ParametersTrusted, found, held).unwrap();
     assert_eq!(effects(&finished.fitted.model), ["bias"]);
     assert_eq!(finished.found.slots.len(), 1);
-}
-
-#[test]
-fn a_search_begins_without_the_causes_that_it_can_go_nowhere_with() {
-    let system = parse(CART, "cart.toml", Format::Toml).unwrap();
-    let (mut prepared, begun) = pushed(&system);
-    let held = Nuisance::new(&prepared.problem, &prepared.nominal);
-    let Prepared { problem, nominal, start, .. } = &mut prepared;
-    let allowed = &Allowed::default();
-    let mut tracks = Tracks { problem, nominal, start, allowed, most: 2, watch: &() };
-    let mut search = tracks.begin(held, 2);
-    let slot = |added: &Added| Slot::of(&added.cause);
-    search.begun = begun.map(|added| Begun { slot: slot(&added), added }).into();
-    let (model, slots) = search.beginning(start.clone());
-    assert_eq!(effects(&model), ["bias"]);
-    assert_eq!(slots.len(), 1);
 }

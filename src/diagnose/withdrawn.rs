@@ -22,8 +22,7 @@ impl Teller<'_, '_> {
                 test.score(&self.extend(&chosen.fitted.model.with(cause, knobs.clone()))?)?;
             Ok(Withdrawn { cause: as_cause(added), test_rmse_ratio: ratio(&with, after) })
         };
-        let all = chosen.found.posterior.iter().flat_map(|posterior| &posterior.withdrawn);
-        all.map(one).collect()
+        chosen.found.withdrawn.iter().map(one).collect()
     }
 }
 

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 
 use super::cause::{Alternative, Cause, ColumnFault, Site, Value};
 use super::causes::of_column;
-use super::finding::NoiseFloor;
+use super::floor::NoiseFloor;
 use super::naming::title_of;
 use crate::data::Record;
 

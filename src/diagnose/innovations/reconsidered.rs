@@ -101,15 +101,20 @@ fn by_innovations(
     let held: Vec<_> = problem.choose.clone();
     let found = base.explain(most, &held, &|| watch.stopped()).ok()?;
     let of_answer = rivals.best() - taken(&base, answer);
-    let none = found.causes.is_empty() && answer.causes() + answer.count_moved() == 0;
+    let none = found.causes.is_empty() && answer.causes() + count_moved(answer) == 0;
     if !none && found.criterion() <= of_answer {
         return None;
     }
-    let told = finished(prepared, allowed, answer, (&base, &found))?;
+    let told = finished(prepared, allowed, (&base, &found))?;
     // a likelihood is exact, a model is not: what it predicts must not get worse
     let before = left(problem, &prepared.start)?;
     let after = left(problem, &told.fitted.model)?;
     (after <= WORSE * before).then_some(told)
+}
+
+/// Parameters moved; along a ridge it is one, whichever.
+fn count_moved(answer: &Finished) -> usize {
+    answer.moved.len().max(usize::from(answer.moved_together))
 }
 
 /// What the causes of an answer take: their numbers, and what they were chosen from.
@@ -117,6 +122,6 @@ fn taken(of: &Predictor, answer: &Finished) -> f64 {
     let model = &answer.fitted.model;
     let numbers: usize = model.added.iter().map(|added| added.cause.unknowns()).sum();
     let numbers = (numbers + answer.moved.len()) as f64;
-    let chosen = (model.added.len() - model.known() + answer.count_moved()) as f64;
+    let chosen = (model.added.len() - model.known() + count_moved(answer)) as f64;
     0.5 * numbers * (of.samples() as f64).ln() + chosen * (of.places_count() as f64).ln()
 }

@@ -10,9 +10,8 @@ use crate::candidate::{Candidate, Wire};
 use crate::criteria::LOOK_ALIKE;
 use crate::effect::Role;
 use crate::error::DiagnoseError;
-use crate::finding::Track;
 use crate::finished::Finished;
-use crate::found::{Belief, Found, Posterior, Slot};
+use crate::found::{Belief, Found, SET, Slot};
 use crate::library::{Allowed, library};
 use crate::note::{Disturbance, Disturbs};
 use crate::nuisance::{Key, Nuisance};
@@ -20,7 +19,7 @@ use crate::precision::Precision;
 use crate::prepared::Prepared;
 use crate::problem::{Added, Grain, Model, Part};
 use crate::refit::Fitted;
-use crate::sets::SET;
+use crate::story::Track;
 use crate::system::Placed;
 
 /// A law as a cause of the library, and the standard errors of its knobs.
@@ -34,7 +33,6 @@ struct Law {
 pub(super) fn finished(
     prepared: &Prepared<'_>,
     allowed: &Allowed,
-    answer: &Finished,
     (of, found): (&Predictor, &Explanation),
 ) -> Option<Finished> {
     let problem = &prepared.problem;
@@ -74,12 +72,10 @@ pub(super) fn finished(
             model: model.clone(),
             slots,
             first: None,
-            last: None,
-            dependence: answer.found.dependence,
             spikes: problem.spikes(),
             full: false,
-            given_up: false,
-            posterior: Some(Posterior { nothing: found.nothing, withdrawn }),
+            nothing: found.nothing,
+            withdrawn,
         },
         fitted: Fitted { model, keys, columns: vec![], residuals },
         nuisance: Nuisance::new(problem, &prepared.nominal),

@@ -25,7 +25,7 @@ mod planning;
 mod visible;
 
 use super::error::DiagnoseError;
-use super::finding::NoiseFloor;
+use super::floor::NoiseFloor;
 use super::floor::{Left, predicted, repeated};
 use super::library::Allowed;
 use super::prepared::{Prepared, windows};

@@ -8,11 +8,12 @@ use super::outlook::{Experiment, LookAlikes, Outlook};
 use super::visible::{shows, supposed, visibility};
 use super::{ALIKE, ENOUGH, experiments};
 use crate::candidate::{Candidate, Wire};
-use crate::finding::{NoiseFloor, Track};
+use crate::floor::NoiseFloor;
 use crate::library::{Allowed, library};
 use crate::nuisance::Nuisance;
 use crate::prepared::Prepared;
 use crate::problem::Part;
+use crate::story::Track;
 use crate::watch::Watch;
 
 /// A model and a record, about to be looked at.

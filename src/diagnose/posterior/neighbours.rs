@@ -8,7 +8,7 @@ use super::dictionary::Item;
 use super::moves::Move;
 use crate::criteria::{NEAR_NEIGHBOUR, NEIGHBOUR};
 
-/// Neighbours in the place of one cause, with its channel and without; in the place of several, of the
+/// Neighbours in the place of one cause, with its channel or its law and without; in the place of several, of the
 /// same coordinate and of another.
 const EACH: usize = 8;
 const MERGED: usize = 30;
@@ -59,10 +59,12 @@ pub(super) fn neighbours(
         if beside && old.of == new.of {
             return true;
         }
-        if !(m.gain > -NEIGHBOUR || beside && m.gain > -NEAR_NEIGHBOUR) {
+        // the same law elsewhere (a delay of an input, of an output) is foretold badly by a tangent
+        let kin = beside || old.effect == new.effect;
+        if !(m.gain > -NEIGHBOUR || kin && m.gain > -NEAR_NEIGHBOUR) {
             return false;
         }
-        let count = if beside { &mut each[first].0 } else { &mut each[first].1 };
+        let count = if kin { &mut each[first].0 } else { &mut each[first].1 };
         *count += 1;
         *count <= EACH
     };

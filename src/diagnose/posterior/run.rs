@@ -11,9 +11,9 @@ use super::study::Study;
 use super::told::{ranking, slots};
 use super::veto::vetoed;
 use crate::candidate::Wire;
-use crate::dependence::{DEPENDS, dependence};
+use crate::dependence::DEPENDS;
 use crate::evidence::NoiseModel;
-use crate::found::{Found, Posterior};
+use crate::found::Found;
 use crate::library::Allowed;
 use crate::limits::limited;
 use crate::nominal::Nominal;
@@ -56,7 +56,6 @@ pub(crate) fn search(
     let start = limited(problem, nominal, allowed, most, start.clone());
     problem.recorrect(&start);
     let y = problem.simulate(&start, Grain::Coarse)?;
-    let dependence = dependence(problem, nominal, &y);
     problem.rescale(&y);
     let mut study = Study::new(problem, nominal, allowed, most, watch);
     empty(&mut study, &start, &y);
@@ -71,7 +70,7 @@ pub(crate) fn search(
         nameless(&mut study);
     }
     watch.tell(0.95, "checking what was named");
-    told(study, screen, dependence)
+    told(study, screen)
 }
 
 /// The model without causes, parameters held and free.
@@ -166,11 +165,11 @@ fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
     for (_, column) in tangents(study.problem, nuisance, &first.model, &first.residual) {
         add_to_basis(&mut basis, column);
     }
-    (!study.items.is_empty()).then(|| ranking(study.problem, &study.items, &first.residual, basis))
+    (!study.items.is_empty()).then(|| ranking(study.problem, &study.items, &first.residual, &basis))
 }
 
 /// The headline after the veto, with its look-alikes.
-fn told(mut study: Study<'_, '_>, first: Option<Screen>, dependence: f64) -> Option<Searched> {
+fn told(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched> {
     let headline = study.beam.headline().cloned()?;
     let (headline, withdrawn) = vetoed(&mut study, headline);
     let nothing = study.beam.probability(|fit| !fit.free && fit.causes() == 0);
@@ -178,12 +177,10 @@ fn told(mut study: Study<'_, '_>, first: Option<Screen>, dependence: f64) -> Opt
         slots: slots(study.problem, &study.beam, &headline),
         model: headline.model.clone(),
         first,
-        last: None,
-        dependence,
         spikes: study.problem.spikes(),
         full: headline.causes() >= study.most && study.most > 0,
-        given_up: false,
-        posterior: Some(Posterior { nothing, withdrawn }),
+        nothing,
+        withdrawn,
     };
     let nuisance = study.nuisance(headline.free).clone();
     Some(Searched { found, free: headline.free, nuisance })

@@ -40,7 +40,7 @@ fn found(record: &Record, threads: usize) -> Finding {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     let system = system("");
     let only = ["cubic", "drag", "bias"].map(String::from);
-    let diagnosis = Diagnosis::of(&system).only(&only).by_posterior(true);
+    let diagnosis = Diagnosis::of(&system).only(&only);
     pool.install(|| diagnosis.run(std::slice::from_ref(record), None, &()).unwrap())
 }
 

@@ -6,10 +6,9 @@ use super::beam::{Beam, Fit, SetKey, name};
 use super::dictionary::Item;
 use crate::candidate::Candidate;
 use crate::criteria::LOOK_ALIKE;
-use crate::found::{Belief, Slot};
+use crate::found::{Belief, SET, Slot};
 use crate::problem::{Grain, Part, Problem};
 use crate::screen::{Scored, Screen};
-use crate::sets::SET;
 use crate::statistics::{dot, project, wald};
 
 /// Candidates that are listed.
@@ -97,16 +96,16 @@ pub(super) fn ranking(
     problem: &Problem<'_>,
     items: &[Item],
     residual: &[f64],
-    basis: Vec<Vec<f64>>,
+    basis: &[Vec<f64>],
 ) -> Screen {
     let mut left = residual.to_vec();
-    project(&basis, &mut left);
+    project(basis, &mut left);
     let mut scored: Vec<Scored> = vec![];
     let mut at: std::collections::BTreeMap<usize, usize> = Default::default();
     for item in items {
         let mut own = item.columns[0].clone();
         let before = dot(&own, &own);
-        project(&basis, &mut own);
+        project(basis, &mut own);
         let size = dot(&own, &own);
         if !(size > 1e-6 * before) {
             continue;
@@ -119,12 +118,9 @@ pub(super) fn ranking(
         let new = Scored {
             cause: item.cause.clone(),
             explained: dot(&fitted, &left),
-            estimate: vec![estimate],
-            start: item.start,
             score: wald(&problem.per_sample(&fitted, &fitted), &problem.per_sample(&fitted, &left)),
             kappa: (size / before).sqrt(),
             unit_effect: size.sqrt(),
-            probe: item.probe,
         };
         match at.get(&item.candidate) {
             Some(&known) if scored[known].explained >= new.explained => {}
@@ -138,5 +134,5 @@ pub(super) fn ranking(
     scored.sort_by(|a, b| b.explained.total_cmp(&a.explained));
     scored.truncate(LISTED);
     let (total, columns) = (dot(&left, &left), items.len());
-    Screen { scored, total, far: 0.0, columns, basis, left, tangents: vec![] }
+    Screen { scored, total, columns }
 }

@@ -112,9 +112,6 @@ pub struct Exam {
     /// Triples drawn per machine and seed.
     #[serde(default)]
     pub triples: usize,
-    /// Whether causes are searched for by the posterior of whole sets instead of step by step.
-    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
-    pub posterior: bool,
 }
 
 fn sizes() -> Vec<f64> {

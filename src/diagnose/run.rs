@@ -1,0 +1,199 @@
+//! One diagnosis from end to end.
+
+use std::time::Instant;
+
+use super::diagnosis::{Diagnosis, FIT, FIT_OF_ALL, TEST_OF_ALL, kept_from};
+use super::distortion::distortion;
+use super::error::DiagnoseError;
+use super::faults::coarse;
+use super::finding::{Finding, RecordFacts, Verdict};
+use super::innovations;
+use super::mended::Mended;
+use super::overlap::refuse_overlap;
+use super::prepared::{Prepared, windows};
+use super::records::firsts;
+use super::resolution::unresolved;
+use super::score::{Counted, TestData};
+use super::searched::{Around, Looked, Searched};
+use super::stretches::horizon;
+use super::teller::Source;
+use crate::data::Record;
+use crate::evaluate::{EvaluateError, Init, Run};
+use crate::watch::Watch;
+
+impl Diagnosis<'_> {
+    fn check_names(&self) -> Result<(), DiagnoseError> {
+        let registered = crate::register::effects().into_iter().map(|(card, _)| card.name);
+        let written = self.system.written.iter().map(crate::effect::WrittenEffect::name);
+        let known: Vec<&str> = registered.chain(written).collect();
+        for name in self.allowed.only.iter().chain(&self.allowed.without) {
+            if !known.contains(&name.as_str()) {
+                return Err(DiagnoseError::NoEffect { name: name.clone() });
+            }
+        }
+        let parameters: Vec<String> =
+            self.system.signals().parameters.iter().map(|p| p.name.clone()).collect();
+        for name in &self.allowed.fixed {
+            if !parameters.contains(name) {
+                return Err(DiagnoseError::NoParameter { name: name.clone(), known: parameters });
+            }
+        }
+        Ok(())
+    }
+
+    /// Runs the diagnosis: the estimation records are split by time into what is fitted
+    /// (70 %) and what chooses (30 %); the test record is touched once, for scoring. Without
+    /// one, the last 20 % of the estimation records are kept for that.
+    ///
+    /// # Errors
+    ///
+    /// If model and records do not go together, the baseline cannot be simulated, or the test record
+    /// holds samples of the other records.
+    pub fn run(
+        &self,
+        records: &[Record],
+        test: Option<&Record>,
+        watch: &dyn Watch,
+    ) -> Result<Finding, DiagnoseError> {
+        let started = Instant::now();
+        self.check_names()?;
+        if let Some(test) = test {
+            refuse_overlap(records, test)?;
+        }
+        for record in records {
+            self.check_baseline(record)?;
+        }
+        let looked = match unresolved(self.system, records)? {
+            Some(notes) => {
+                let searched = self.figures(records, test, watch)?;
+                Looked { searched, faults: vec![], notes, alone: vec![] }
+            }
+            None => match horizon(self.system, records)? {
+                None => self.in_one_go(records, test, watch)?,
+                Some(length) => self.by_stretches(records, test, length, watch)?,
+            },
+        };
+        let Looked { searched, mut faults, notes, alone } = looked;
+        faults.extend(coarse(&searched.noise_floor, records));
+        let around = Around {
+            faults,
+            notes,
+            alone,
+            distortion: distortion(records),
+            record: RecordFacts {
+                records: records.len(),
+                samples: records.iter().map(Record::len).sum(),
+                sampling_time: records.first().map_or(0.0, |record| record.sampling_time),
+                test_samples: test.map(Record::len),
+            },
+            interrupted: watch.stopped(),
+            seconds: started.elapsed().as_secs_f64(),
+        };
+        watch.tell(1.0, "done");
+        Ok(searched.finding(around))
+    }
+
+    /// The baseline's figures, where there is nothing to search in.
+    fn figures(
+        &self,
+        records: &[Record],
+        test: Option<&Record>,
+        watch: &dyn Watch,
+    ) -> Result<Searched, DiagnoseError> {
+        let mut searched = self.search(records, test, 0, watch)?;
+        searched.verdict = Verdict::NothingFound;
+        searched.verdict_probability = None;
+        searched.causes.clear();
+        searched.series.curves.clear();
+        searched.notes.clear();
+        Ok(searched)
+    }
+
+    /// The diagnosis of records that a free run can follow from end to end.
+    fn in_one_go(
+        &self,
+        records: &[Record],
+        test: Option<&Record>,
+        watch: &dyn Watch,
+    ) -> Result<Looked, DiagnoseError> {
+        let Mended { records: mended, test: of_test, mut faults, clock, blind } =
+            self.mended(records, test)?;
+        if blind {
+            let searched = self.figures(records, test, watch)?;
+            return Ok(Looked { searched, faults, notes: vec![], alone: vec![] });
+        }
+        let (records, test) = (mended, of_test);
+        let searched = match clock {
+            None => self.search(&records, test.as_ref(), self.max_causes, watch)?,
+            Some(clock) => {
+                let (searched, is_clock) = self.clocked(&records, test.as_ref(), &clock, watch)?;
+                faults.extend(is_clock.then_some(clock));
+                searched
+            }
+        };
+        let alone = self.alone(&searched, &records, watch)?;
+        Ok(Looked { searched, faults, notes: vec![], alone })
+    }
+
+    /// The search for what the model itself gets wrong, on records without faults but spikes.
+    pub(super) fn search(
+        &self,
+        records: &[Record],
+        test: Option<&Record>,
+        most: usize,
+        watch: &dyn Watch,
+    ) -> Result<Searched, DiagnoseError> {
+        let kept: Vec<Record>;
+        let (used, test, share) = match test {
+            Some(record) => {
+                let counted = Counted::After(self.init);
+                (records, TestData { records: vec![record.clone()], counted }, FIT)
+            }
+            None => {
+                kept = records.iter().map(|r| r.slice(0..kept_from(r))).collect();
+                let counted = Counted::From(records.iter().map(kept_from).collect());
+                let test = TestData { records: records.to_vec(), counted };
+                (&kept[..], test, FIT_OF_ALL / (1.0 - TEST_OF_ALL))
+            }
+        };
+        let mut whole = Prepared::new(self.system, used, share)?;
+        let windows = windows(used);
+        let mut looked_at = None;
+        let (chosen, other) = match &windows {
+            None => innovations::search(&mut whole, &self.allowed, most, watch)?,
+            Some(windows) => {
+                let mut part = Prepared::new(self.system, windows, share)?;
+                let (chosen, other) = innovations::search(&mut part, &self.allowed, most, watch)?;
+                looked_at = Some(part);
+                watch.tell(0.95, "fitting to all samples");
+                let chosen = innovations::finish(&mut whole, &self.allowed, chosen)?;
+                (chosen, other.map(|other| whole.finish(&self.allowed, other)).transpose()?)
+            }
+        };
+        watch.tell(0.97, "measuring the gain");
+        let firsts = firsts(records);
+        let (start, fixed) = (&whole.start, &self.allowed.fixed);
+        let from = Source { start, test: &test, used, firsts: &firsts, fixed };
+        let searched = whole.teller().tell(&chosen, other.as_ref(), &from)?;
+        Ok(innovations::completed(looked_at.as_ref().unwrap_or(&whole), &chosen, searched))
+    }
+
+    /// Says at which sample a baseline leaves the finite numbers, if it does.
+    pub(super) fn check_baseline(&self, record: &Record) -> Result<(), EvaluateError> {
+        let run = Run::new(self.system, record)?;
+        let n = run.init_samples(Init::Forgotten);
+        let held = run.track(run.starts(0));
+        if held.is_finite() {
+            return Ok(());
+        }
+        let track = run.track(run.starts(n));
+        match track.diverged_at {
+            Some(sample) => Err(EvaluateError::Diverges {
+                record: record.source.clone(),
+                sample,
+                time: record.time(sample),
+            }),
+            None => Ok(()),
+        }
+    }
+}
