@@ -8,7 +8,7 @@ use super::finding::{Alone, Verdict};
 use super::records::name_of;
 use super::searched::Searched;
 use super::shown::InRecord;
-use crate::data::Record;
+use crate::data::{Record, Signal};
 use crate::evaluate::{Init, Simulation};
 use crate::statistics::rms;
 use crate::system::System;
@@ -19,8 +19,11 @@ const RECORDS: usize = 8;
 const SAMPLES: usize = 400;
 
 impl Diagnosis<'_> {
-    /// Asks each of several records on its own, where all together name no cause in the machine:
-    /// what only one of them has is a compromise for all that none of them believes.
+    /// Asks each of several records on its own, where all together name no cause in the machine, or one
+    /// that does not show in all of them: what only one record has is a compromise for all.
+    ///
+    /// Told is what is more probable for that record, with nothing in the others, than what is named
+    /// together: its sum of squares is smaller, at no more numbers.
     pub(super) fn alone(
         &self,
         searched: &Searched,
@@ -29,11 +32,26 @@ impl Diagnosis<'_> {
     ) -> Result<Vec<Alone>, DiagnoseError> {
         let mut found = vec![];
         let named = searched.causes.iter().any(|cause| !cause.is_data_fault());
-        if records.len() < 2 || records.len() > RECORDS || named {
+        let differs = |said: &InRecord| said.shows == Some(false);
+        let alike = !searched.causes.iter().flat_map(|c| c.records.iter().flatten()).any(differs);
+        if records.len() < 2 || records.len() > RECORDS || named && alike {
             return Ok(found);
         }
+        let runs = |system: &System| -> Vec<Option<Outputs>> {
+            records.iter().map(|record| outputs(system, record)).collect()
+        };
+        let bare = runs(self.system);
+        let scales = scales(records, &bare);
+        let left = |record: &Record, run: &Option<Outputs>| squares(record, run.as_ref(), &scales);
+        let of_bare: Vec<f64> = records.iter().zip(&bare).map(|(r, run)| left(r, run)).collect();
+        let together = match named {
+            true => {
+                records.iter().zip(runs(&searched.extended)).map(|(r, run)| left(r, &run)).sum()
+            }
+            false => f64::INFINITY,
+        };
         let names: Vec<String> = records.iter().enumerate().map(|(i, r)| name_of(r, i)).collect();
-        for (record, name) in records.iter().zip(&names) {
+        for (i, (record, name)) in records.iter().zip(&names).enumerate() {
             if record.len() < SAMPLES || watch.stopped() {
                 continue;
             }
@@ -41,6 +59,10 @@ impl Diagnosis<'_> {
             let own = self.search(one, None, self.max_causes, watch)?;
             let first = own.causes.iter().find(|cause| !cause.is_data_fault());
             let (Some(first), Verdict::CausesFound) = (first, own.verdict) else { continue };
+            let others: f64 = of_bare.iter().sum::<f64>() - of_bare[i];
+            if !(left(record, &outputs(&own.extended, record)) + others < together) {
+                continue;
+            }
             let said: Option<Vec<InRecord>> = records
                 .iter()
                 .zip(&names)
@@ -61,11 +83,7 @@ impl Diagnosis<'_> {
     /// Weight of an extended model against the baseline on one record, see [`InRecord`]; `None`
     /// where one of them cannot be simulated.
     fn weight(&self, extended: &System, record: &Record) -> Option<Option<(f64, f64)>> {
-        let run = |system: &System| -> Option<BTreeMap<String, Vec<f64>>> {
-            let run = Simulation::of(system, record, Init::Forgotten).ok()?;
-            run.diverged_at.is_none().then(|| run.outputs.into_iter().collect())
-        };
-        let (bare, with) = (run(self.system)?, run(extended)?);
+        let (bare, with) = (outputs(self.system, record)?, outputs(extended, record)?);
         let (mut ff, mut fr) = (vec![0.0; record.len()], vec![0.0; record.len()]);
         for output in &record.outputs {
             let (Some(a), Some(b)) = (bare.get(&output.name), with.get(&output.name)) else {
@@ -82,4 +100,41 @@ impl Diagnosis<'_> {
         }
         Some(crate::statistics::weight(&ff, &fr))
     }
+}
+
+/// Outputs of a free run, by name.
+type Outputs = BTreeMap<String, Vec<f64>>;
+
+/// A free run of a system along a record; `None` where it diverges.
+fn outputs(system: &System, record: &Record) -> Option<Outputs> {
+    let run = Simulation::of(system, record, Init::Forgotten).ok()?;
+    run.diverged_at.is_none().then(|| run.outputs.into_iter().collect())
+}
+
+/// Measured minus simulated, where both are there.
+fn off<'a>(output: &'a Signal, run: &'a Outputs) -> impl Iterator<Item = f64> + 'a {
+    let y = run.get(&output.name).map_or(&[][..], |y| y);
+    output.values.iter().zip(y).map(|(a, b)| a - b).filter(|v| v.is_finite())
+}
+
+/// Of every output, the root mean square that these runs leave of all records together.
+fn scales(records: &[Record], runs: &[Option<Outputs>]) -> BTreeMap<String, f64> {
+    let mut all: BTreeMap<String, Vec<f64>> = BTreeMap::new();
+    for (record, run) in records.iter().zip(runs) {
+        for (output, run) in record.outputs.iter().flat_map(|o| run.iter().map(move |run| (o, run)))
+        {
+            all.entry(output.name.clone()).or_default().extend(off(output, run));
+        }
+    }
+    all.into_iter().map(|(name, left)| (name, rms(&left).max(f64::MIN_POSITIVE))).collect()
+}
+
+/// Squares of what a run leaves of a record, in units of these scales; infinite without a run.
+fn squares(record: &Record, run: Option<&Outputs>, scales: &BTreeMap<String, f64>) -> f64 {
+    let Some(run) = run else { return f64::INFINITY };
+    let one = |output: &Signal| {
+        let over = scales.get(&output.name).map_or(0.0, |scale| scale.powi(-2));
+        over * off(output, run).map(|v| v * v).sum::<f64>()
+    };
+    record.outputs.iter().map(one).sum()
 }

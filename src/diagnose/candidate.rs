@@ -1,6 +1,6 @@
 //! One supposed cause: an effect at a place, with what is free in it.
 
-use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Role, ShapeOf};
+use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, ShapeOf};
 use crate::system::{AlsoInto, Placed, Route};
 
 /// Natural logarithm of the number of values that a record tells apart within the range of a number.
@@ -93,14 +93,23 @@ impl Candidate {
     pub fn same_place(&self, other: &Self) -> bool {
         let is_law =
             |c: &Self| c.card.mechanism == Mechanism::Law && c.of.is_some() && !c.is_known_limit();
+        is_law(self) && is_law(other) && self.is_at(other)
+    }
+
+    /// Whether two candidates have the same channels and coordinate.
+    pub fn is_at(&self, other: &Self) -> bool {
         let channels = |c: &Self| -> Vec<String> {
             c.also_into.iter().map(|also| also.channel().to_string()).collect()
         };
-        is_law(self)
-            && is_law(other)
-            && self.into == other.into
+        self.into == other.into
             && self.coordinates() == other.coordinates()
             && channels(self) == channels(other)
+    }
+
+    /// Whether it is a function of its coordinate alone, which a curve can be read as.
+    pub fn is_curve(&self) -> bool {
+        let of_rate = matches!(self.card.needs, Needs::CoordinateWithRate | Needs::Motion);
+        self.same_place(self) && self.card.states == 0 && !of_rate
     }
 
     /// Whether it is blended in by a factor from 0 to 1, having no coefficient.

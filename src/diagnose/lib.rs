@@ -4,6 +4,7 @@ use lacuna_core::{
     data, digits, effect, evaluate, fault, model, optimise, real, register, statistics, system,
     watch,
 };
+use lacuna_estimate as estimate;
 use lacuna_likelihood as likelihood;
 use lacuna_plugins as plugins;
 

@@ -132,6 +132,11 @@ impl Diagnosis<'_> {
             }
         };
         let alone = self.alone(&searched, &records, watch)?;
+        let searched = match alone.is_empty() {
+            true => searched,
+            // what is named together is a compromise that none of the records has
+            false => self.search(&records, test.as_ref(), 0, watch)?,
+        };
         Ok(Looked { searched, faults, notes: vec![], alone })
     }
 

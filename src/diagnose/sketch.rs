@@ -136,6 +136,19 @@ impl Drawing<'_, '_> {
         places
     }
 
+    /// Curves without a value at the place of a law of the library, with its channels; they differ in
+    /// their knots.
+    pub fn in_place_of(&self, law: &Candidate) -> Vec<Candidate> {
+        let here = |curve: &Arc<Candidate>| curve.into == law.into && curve.of == law.of;
+        let rewired = |curve: Arc<Candidate>| Candidate {
+            also_into: law.also_into.clone(),
+            wire: law.wire.clone(),
+            twins: law.twins.clone(),
+            ..Candidate::clone(&curve)
+        };
+        self.places().into_iter().flatten().filter(here).map(rewired).collect()
+    }
+
     /// One curve to first order, as smooth as what is left out asks for.
     fn sketch(&self, at: &At<'_>, cause: &Arc<Candidate>) -> Option<Sketch> {
         let n = cause.linear.len();

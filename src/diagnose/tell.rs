@@ -27,6 +27,8 @@ use crate::system::System;
 
 /// Share of the removable error that a curve of unknown shape must remove to explain it.
 const EXPLAINED: f64 = 0.8;
+/// Share of the removable error that named causes must account for, within what is known of it.
+const MOST: f64 = 0.5;
 /// Score of the Ljung-Box test below which a residual counts as white.
 const WHITE: f64 = 3.0;
 
@@ -66,6 +68,7 @@ impl Teller<'_, '_> {
         let curves_only = causes.iter().all(|c| c.is_data_fault() || c.wording.shape.is_some());
         let verdict = match (structural, causes.len()) {
             (1.., _) if curves_only && gain.error_removed < EXPLAINED => Verdict::Unexplained,
+            (1.., _) if gain.interval95[1] < MOST => Verdict::Unexplained,
             (0, 0) if chosen.dependence > DEPENDS => Verdict::Unexplained,
             (0, 0) => Verdict::NothingFound,
             (0, _) => Verdict::DataFault,

@@ -207,9 +207,14 @@ fn attempt(
             wishes.push(Wish { model, noise: best.noise.clone() });
         }
     }
-    let mut fits = study.fit(best.free, &wishes, ITERATIONS.0);
+    race(study, best.free, &wishes, best.posterior());
+}
+
+/// Fits these, and lets go after two iterations of those that are hopelessly below `top` or the best.
+pub(super) fn race(study: &mut Study<'_, '_>, free: bool, wishes: &[Wish], top: f64) {
+    let mut fits = study.fit(free, wishes, ITERATIONS.0);
     fits.sort_by(|a, b| b.posterior().total_cmp(&a.posterior()));
-    let top = fits.first().map_or(f64::NEG_INFINITY, Fit::posterior).max(best.posterior());
+    let top = fits.first().map_or(f64::NEG_INFINITY, Fit::posterior).max(top);
     let goes_on = |(i, fit): &(usize, &Fit)| *i < RACERS || fit.posterior() > top - RACE;
     let again: Vec<Wish> = fits
         .iter()
@@ -220,5 +225,5 @@ fn attempt(
     for fit in fits {
         study.beam.keep(fit);
     }
-    study.fit_and_keep(best.free, &again, ITERATIONS.1);
+    study.fit_and_keep(free, &again, ITERATIONS.1);
 }

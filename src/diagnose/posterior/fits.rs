@@ -52,7 +52,7 @@ impl Judge<'_, '_> {
         let variance = squares / residuals.len().max(1) as f64;
         let prior = self.expected(&model, &keys) - price(&model, self.free, self.choices);
         let fit = Fit {
-            occam: occam(&columns, &widths, variance),
+            occam: self.of_numbers(&keys, &columns, &widths, variance),
             likelihood: estimated.log_likelihood,
             noise: estimated.whitener,
             free: self.free,
@@ -61,6 +61,17 @@ impl Judge<'_, '_> {
             prior,
         };
         fit.posterior().is_finite().then_some(fit)
+    }
+
+    /// The Occam factor of parameters and laws, initial states being a nuisance that all models share
+    /// (Kass and Vaidyanathan, JRSS B 54, 1992): ln det of what is left of the others once these are
+    /// accounted for. A record that is cut into stretches has as many of them as stretches.
+    fn of_numbers(&self, keys: &[Key], columns: &[Vec<f64>], widths: &[f64], variance: f64) -> f64 {
+        let starts = |i: &usize| matches!(keys[*i], Key::Start(..));
+        let shared: Vec<usize> = (0..keys.len().min(columns.len())).filter(starts).collect();
+        let own: Vec<Vec<f64>> = shared.iter().map(|&i| columns[i].clone()).collect();
+        let own_widths: Vec<f64> = shared.iter().map(|&i| widths[i]).collect();
+        occam(columns, widths, variance) - occam(&own, &own_widths, variance)
     }
 
     /// Logarithm of the Gaussian priors of parameters, initial states and the numbers of curves.

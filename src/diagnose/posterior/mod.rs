@@ -7,6 +7,7 @@
 //!         fit the leading moves, racing; model <- the most probable of all that were fitted
 //! until nothing is promising
 //! fit the neighbours of the model: same place, same law, same coordinate; repeat if one is better
+//! where a place needs several laws: a free curve in their place, every law by regression on it; repeat
 //! the same with parameters free, where that is near; laws without a name, where something is left
 //! ```
 //!
@@ -22,6 +23,7 @@ mod dictionary;
 mod fits;
 #[cfg(test)]
 pub(crate) mod fixture;
+mod laws;
 mod metric;
 mod moves;
 mod nameless;

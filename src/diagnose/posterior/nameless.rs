@@ -5,10 +5,12 @@ use std::sync::Arc;
 
 use super::beam::Fit;
 use super::fits::Wish;
+use super::laws::read_as_laws;
 use super::starts;
 use super::study::Study;
 use crate::candidate::Candidate;
 use crate::dependence::{DEPENDS, dependence};
+use crate::library::{Allowed, library};
 use crate::network_start::start;
 use crate::problem::{Grain, Model};
 use crate::readback::read;
@@ -19,6 +21,8 @@ use crate::surface;
 /// Curves that are fitted, and their sizes as shares of what is foretold.
 const CURVES: usize = 4;
 const SIZES: [f64; 2] = [1.0, 0.4];
+/// Curves that are read as laws.
+const READ: usize = 2;
 /// Learned laws that are tried, seeds of their first weights, iterations of a first look and of a fit.
 const LEARNED: usize = 3;
 const SEEDS: [u64; 2] = [1, 2];
@@ -37,19 +41,21 @@ pub(super) fn nameless(study: &mut Study<'_, '_>) {
     if study.most == 0 || study.watch.stopped() {
         return;
     }
-    let left = left(study, &best.model);
-    if (curve || left > DEPENDS) && study.allowed.effect(sketch::NAME) {
+    let hidden = |study: &Study<'_, '_>, best: &Fit| {
+        let left = best.noise.whiten(&best.residual);
+        let n = (left.len() / study.problem.y.len().max(1)).max(1);
+        best.noise.is_coloured()
+            || left.chunks(n).any(|r| whiteness(r) > COLOURED)
+            || self::left(study, &best.model) > DEPENDS
+    };
+    if curve || hidden(study, &best) {
         study.watch.tell(0.9, "drawing free curves");
         for base in bases(study, &best) {
-            curves(study, &base);
+            curves(study, &base, best.posterior());
         }
     }
     let Some(best) = study.beam.best().cloned() else { return };
-    let named = best.model.added.iter().skip(best.model.known()).any(|a| !a.cause.is_drawn());
-    let hidden = best.noise.whiten(&best.residual);
-    let n = (best.residual.len() / study.problem.y.len().max(1)).max(1);
-    let coloured = best.noise.is_coloured() || hidden.chunks(n).any(|r| whiteness(r) > COLOURED);
-    if (law || !named && (coloured || left > DEPENDS)) && study.allowed.effect(surface::NAME) {
+    if (law || hidden(study, &best)) && study.allowed.effect(surface::NAME) {
         study.watch.tell(0.93, "learning a law");
         for base in bases(study, &best) {
             learned(study, &base);
@@ -78,7 +84,9 @@ fn drawing<'s>(study: &'s Study<'_, '_>, base: &Fit) -> Drawing<'s, 's> {
     Drawing { problem: study.problem, nominal: study.nominal, nuisance: study.nuisance(base.free) }
 }
 
-fn curves(study: &mut Study<'_, '_>, base: &Fit) {
+/// Free curves beside a model, and the laws that the leading ones are read as; those stay below `top`
+/// only if they are near it.
+fn curves(study: &mut Study<'_, '_>, base: &Fit, top: f64) {
     let Some(y) = study.problem.simulate(&base.model, Grain::Coarse) else { return };
     let mut sketches = drawing(study, base).sketches(&base.model, &y);
     // beside a law of the same coordinate neither would have a size of its own
@@ -93,7 +101,16 @@ fn curves(study: &mut Study<'_, '_>, base: &Fit) {
         Wish { model: base.model.with(&sketch.cause, values), noise: base.noise.clone() }
     };
     let wishes: Vec<Wish> = begun.map(wish).collect();
-    study.fit_and_keep(base.free, &wishes, ITERATIONS);
+    let mut fits = study.fit(base.free, &wishes, ITERATIONS);
+    fits.sort_by(|a, b| b.posterior().total_cmp(&a.posterior()));
+    for fit in fits.iter().take(READ) {
+        read_as_laws(study, fit, top);
+    }
+    if study.allowed.effect(sketch::NAME) {
+        fits.into_iter().for_each(|fit| {
+            study.beam.keep(fit);
+        });
+    }
 }
 
 fn learned(study: &mut Study<'_, '_>, base: &Fit) {
@@ -135,8 +152,10 @@ fn by_its_name(study: &mut Study<'_, '_>, base: &Fit, learned: &Fit) {
     let here = |c: &&Arc<Candidate>| {
         c.effect == effect && c.into == *into && c.of.as_deref() == of && c.also_into.is_empty()
     };
-    let wishes: Vec<Wish> = study
-        .candidates
+    // its name may be told although the search was confined to laws without one
+    let only = Allowed { only: vec![effect.into()], ..Allowed::default() };
+    let all = library(study.problem, study.nominal, &base.model, vec![], &only);
+    let wishes: Vec<Wish> = all
         .iter()
         .filter(here)
         .flat_map(|cause| {

@@ -57,7 +57,8 @@ pub(super) fn neighbours(
         let old = place(first);
         let beside = old.into == new.into;
         if beside && old.of == new.of {
-            return true;
+            // laws that are curves are asked for from the curve of their place
+            return !(old.is_curve() && new.is_curve());
         }
         // the same law elsewhere (a delay of an input, of an output) is foretold badly by a tangent
         let kin = beside || old.effect == new.effect;

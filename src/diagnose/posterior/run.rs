@@ -6,6 +6,7 @@ use super::beam::Fit;
 use super::chain::{ROUNDS, chain};
 use super::contribution::tangents;
 use super::fits::Wish;
+use super::laws::{Asked, laws_of_places};
 use super::nameless::{left, nameless};
 use super::study::Study;
 use super::told::{ranking, slots};
@@ -67,7 +68,14 @@ pub(crate) fn search(
         chain(&mut study, false, 0..1);
         screen = screened(&study, &first);
         families(&mut study);
+        let before = study.beam.best().map(Fit::key);
         nameless(&mut study);
+        let named = |fit: &&Fit| !fit.model.added.iter().any(|added| added.cause.is_drawn());
+        let now = study.beam.best().filter(named).map(|fit| (fit.free, fit.key()));
+        if let Some((free, _)) = now.filter(|(_, key)| before.as_ref() != Some(key)) {
+            // what a curve is read as was not searched on from
+            searched(&mut study, free, 1);
+        }
     }
     watch.tell(0.95, "checking what was named");
     told(study, screen)
@@ -94,7 +102,7 @@ fn is_behind(study: &Study<'_, '_>) -> bool {
 /// wrong, laws that stand in for them would be searched in vain.
 fn families(study: &mut Study<'_, '_>) {
     if study.free.free.is_empty() {
-        chain(study, false, 1..ROUNDS);
+        searched(study, false, 1);
         return;
     }
     let parameters_first = is_behind(study);
@@ -108,11 +116,11 @@ fn families(study: &mut Study<'_, '_>) {
         if let Some(model) = study.beam.best_of(false).map(|fit| fit.model.clone()) {
             study.stand_on(&model);
         }
-        chain(study, false, 0..ROUNDS);
+        searched(study, false, 0);
         toggle(study);
         return;
     }
-    chain(study, false, 1..ROUNDS);
+    searched(study, false, 1);
     toggle(study);
     let (Some(held), Some(free)) = (study.beam.best_of(false), study.beam.best_of(true)) else {
         return;
@@ -133,8 +141,23 @@ fn free_chain(study: &mut Study<'_, '_>) {
     if let Some(model) = study.beam.best_of(true).map(|fit| fit.model.clone()) {
         study.stand_on(&model);
     }
-    chain(study, true, 0..ROUNDS);
+    searched(study, true, 0);
     toggle(study);
+}
+
+/// A chain, and on from what its places are asked to be, until that is nothing better.
+fn searched(study: &mut Study<'_, '_>, free: bool, from: usize) {
+    let (mut asked, mut from) = (Asked::new(), from);
+    loop {
+        chain(study, free, from..ROUNDS);
+        let before = study.beam.best_of(free).map(Fit::key);
+        let any = laws_of_places(study, free, &mut asked);
+        study.polish(POLISHED);
+        if !any || study.beam.best_of(free).map(Fit::key) == before {
+            return;
+        }
+        from = 1;
+    }
 }
 
 /// The leading sets with their parameters the other way.
@@ -170,6 +193,22 @@ fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
 
 /// The headline after the veto, with its look-alikes.
 fn told(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched> {
+    if std::env::var("TRACE").is_ok() {
+        let mut all: Vec<&Fit> = study.beam.fits().collect();
+        all.sort_by(|a, b| b.posterior().total_cmp(&a.posterior()));
+        for fit in all.iter().take(25) {
+            eprintln!(
+                "TRACE {:.1} L {:.1} occ {:.1} prior {:.1} free {} {:?}",
+                fit.posterior(),
+                fit.likelihood,
+                fit.occam,
+                fit.prior,
+                fit.free,
+                fit.key().names
+            );
+        }
+        eprintln!("TRACE of {} left {:.1}", all.len(), left(&study, &all[0].model));
+    }
     let headline = study.beam.headline().cloned()?;
     let (headline, withdrawn) = vetoed(&mut study, headline);
     let nothing = study.beam.probability(|fit| !fit.free && fit.causes() == 0);

@@ -8,6 +8,9 @@ use crate::model::LaneNumber;
 use crate::optimise::{Bounds, LeastSquares, LevenbergMarquardt};
 use crate::real::{F64x8, Real};
 
+/// Share of the squares by which the ends of two fits differ that are the same hill.
+const SAME: f64 = 1e-3;
+
 /// A law, or a sum of two, where it meets the pairs best.
 pub(super) struct Fitted {
     pub parts: Vec<Part>,
@@ -222,4 +225,25 @@ pub(super) fn free(curve: &[Drawn], knots: usize, z: &[f64], w: &[f64]) -> Optio
     let right = DVector::from_column_slice(w);
     let found = a.clone().svd(true, true).solve(&right, 1e-10).ok()?;
     Some((right - a * found).norm_squared())
+}
+
+/// One law from each of these starts: all knobs where they meet the pairs best and the sum of the
+/// squares that is left, best first; starts that lead to the same are one.
+pub(super) fn each(
+    law: &dyn CandidateEffect,
+    starts: &[Vec<f64>],
+    range: &Bounds,
+    (z, w): (&[f64], &[f64]),
+) -> Vec<(Vec<f64>, f64)> {
+    let parts = [Part { effect: String::new(), law: law.boxed() }];
+    let ranges = std::slice::from_ref(range);
+    let from = |start: &Vec<f64>| fitted(&parts, std::slice::from_ref(start), ranges, z, w);
+    let mut found: Vec<(Vec<f64>, f64)> = starts
+        .iter()
+        .filter_map(from)
+        .map(|(mut knobs, left)| (knobs.swap_remove(0), left))
+        .collect();
+    found.sort_by(|a, b| a.1.total_cmp(&b.1));
+    found.dedup_by(|b, a| (b.1 - a.1).abs() <= SAME * a.1);
+    found
 }

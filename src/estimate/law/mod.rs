@@ -14,6 +14,7 @@ mod fit;
 
 use crate::effect::{CandidateEffect, Mechanism, Needs, View};
 use crate::model::{Quantity, Signal};
+use crate::optimise::Bounds;
 
 /// Bins of as many samples each.
 const BINS: usize = 32;
@@ -165,6 +166,20 @@ pub fn read(pairs: &Pairs<'_>, library: &[(String, Box<dyn CandidateEffect>)]) -
     let mut candidates: Vec<Candidate> = each.collect();
     candidates.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     Reading { share, curve, candidates }
+}
+
+/// Regression of one law on pairs (z, w) from several starts (nonlinear least squares has several
+/// hills): all of its knobs and the sum of squares that is left, best first, each hill once.
+///
+/// `starts` and `range` hold a value per knob; coefficients are solved for, wherever they start.
+#[doc(hidden)]
+pub fn regressions(
+    law: &dyn CandidateEffect,
+    starts: &[Vec<f64>],
+    range: &Bounds,
+    pairs: (&[f64], &[f64]),
+) -> Vec<(Vec<f64>, f64)> {
+    fit::each(law, starts, range, pairs)
 }
 
 /// Whether a law can be asked about a curve of this coordinate.
