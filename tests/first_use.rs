@@ -93,7 +93,8 @@ fn an_offset_of_a_sensor_says_what_to_do() {
     let finding = diagnosed(&model(0.05), record_of(&u, &y, 2), &["bias"]);
     let text = sentences::headline(&finding);
     assert!(text.contains("on angle, -0.0") && text.contains("reads too low, add 0.0"), "{text}");
-    assert!(text.contains(" rad to it") || text.contains(" rad; "), "{text}");
+    // how sure it is stands behind the size
+    assert!(text.contains(" rad to it") || text.contains(" rad (> 99 % sure); "), "{text}");
 }
 
 #[test]

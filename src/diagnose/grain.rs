@@ -68,6 +68,11 @@ impl Problem<'_> {
         }
     }
 
+    /// Whether coarse steps are the integrator's own.
+    pub fn has_own_steps(&self) -> bool {
+        self.coarse.substeps == self.base.substeps
+    }
+
     /// Takes the integrator's own steps from now on; rough ones are as few as show the direction
     /// of small changes about all of these models.
     pub fn take_own_steps(&mut self, models: &[&Model]) {

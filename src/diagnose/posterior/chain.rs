@@ -102,9 +102,13 @@ fn one_round(study: &mut Study<'_, '_>, best: Fit, round: usize, last: bool) -> 
         let is_new = |m: &Move| !study.tried.contains(&m.leads_to(&ground.fit, &items));
         let promising = moves.iter().any(|m| m.gain > -0.5 * PREDICTED && is_new(m));
         if last || !promising {
-            if !last {
-                moves = ground.standing(study).moves(&items, &metrics, true).moves;
-            }
+            let stale = match last {
+                true => valued,
+                false => ground.standing(study).moves(&items, &metrics, true).valued,
+            };
+            let wanted = stale.iter().map(|&i| items[i].place()).collect();
+            refresh(study, &ground, &mut items, wanted, true);
+            moves = ground.standing(study).moves(&items, &metrics, true).moves;
             let chosen = neighbours(&ground.fit, moves, &items, &study.beam, &study.settled);
             let keys: Vec<SetKey> =
                 chosen.iter().map(|m| m.leads_to(&ground.fit, &items)).collect();
@@ -114,17 +118,35 @@ fn one_round(study: &mut Study<'_, '_>, best: Fit, round: usize, last: bool) -> 
             study.items = items;
             return false;
         }
-        let wanted: BTreeSet<(usize, usize)> = valued.iter().map(|&i| items[i].place()).collect();
-        let fresh = dictionary(study.problem, &ground.about(), &study.candidates, Some(&wanted));
-        moves = ground.standing(study).moves(&fresh, &metrics, false).moves;
-        // those that were not looked at again stay what they were
-        let stale = items.into_iter().filter(|item| !wanted.contains(&item.place()));
-        items = fresh.into_iter().chain(stale).collect();
+        let wanted = valued.iter().map(|&i| items[i].place()).collect();
+        let fresh = refresh(study, &ground, &mut items, wanted, false);
+        moves = ground.standing(study).moves(&items[..fresh], &metrics, false).moves;
     }
     let chosen = leading(study, &ground.fit, moves, &items, round);
     attempt(study, &ground, &chosen, &items, round == 0);
     study.items = items;
     true
+}
+
+/// Looks again about a model at what is wanted, and with `plain` at every law of one number; what was
+/// not looked at again stays what it was. How many items, the first ones, are fresh.
+fn refresh(
+    study: &Study<'_, '_>,
+    ground: &Ground,
+    items: &mut Vec<Item>,
+    wanted: BTreeSet<(usize, usize)>,
+    plain: bool,
+) -> usize {
+    let mut wanted = wanted;
+    if plain {
+        let one = study.candidates.iter().enumerate().filter(|(_, cause)| cause.unknowns() == 1);
+        wanted.extend(one.filter(|(_, cause)| cause.starts.len() == 1).map(|(c, _)| (c, 0)));
+    }
+    let fresh = dictionary(study.problem, &ground.about(), &study.candidates, Some(&wanted));
+    let count = fresh.len();
+    let old = std::mem::replace(items, fresh);
+    items.extend(old.into_iter().filter(|item| !wanted.contains(&item.place())));
+    count
 }
 
 /// The metrics that moves are compared in: that of the model's disturbance, and at first a white one

@@ -120,8 +120,11 @@ impl Standing<'_> {
                     stay = answers.stay;
                 }
                 found.valued.extend(answers.by_size.iter().take(LOOKED_AT));
-                for Answer { new, predicted } in answers.single.into_iter().chain(answers.pairs) {
-                    found.valued.extend(new.iter().map(|n| n.0));
+                let single = answers.single.into_iter();
+                for (n, Answer { new, predicted }) in single.chain(answers.pairs).enumerate() {
+                    if !neighbours || n < LOOKED_AT {
+                        found.valued.extend(new.iter().map(|n| n.0));
+                    }
                     found.moves.push(Move { out: out.clone(), new, gain: predicted - stay });
                 }
             }

@@ -61,8 +61,9 @@ pub(super) fn neighbours(
             return !(old.is_curve() && new.is_curve());
         }
         // the same law elsewhere (a delay of an input, of an output) is foretold badly by a tangent
-        let kin = beside || old.effect == new.effect;
-        if !(m.gain > -NEIGHBOUR || kin && m.gain > -NEAR_NEIGHBOUR) {
+        let same = old.effect == new.effect;
+        let kin = beside || same;
+        if !(same || m.gain > -NEIGHBOUR || kin && m.gain > -NEAR_NEIGHBOUR) {
             return false;
         }
         let count = if kin { &mut each[first].0 } else { &mut each[first].1 };

@@ -33,6 +33,8 @@ const SEVERAL: usize = 3;
 /// Sets whose parameters are let go or put back: so many within so much of the best.
 const TOGGLED: (usize, f64) = (6, 5.0);
 const POLISHED: f64 = 8.0;
+/// Distance from the best within which fits are compared by the integrator's own steps, and iterations.
+const SETTLED: (f64, usize) = (12.0, 3);
 
 /// What a search ended with: causes, whether parameters are free, and what moves beside causes.
 pub(crate) struct Searched {
@@ -78,6 +80,7 @@ pub(crate) fn search(
         }
     }
     watch.tell(0.95, "checking what was named");
+    study.settle(SETTLED.0, SETTLED.1);
     told(study, screen)
 }
 

@@ -121,6 +121,11 @@ impl<'a, 'b> Study<'a, 'b> {
         } else {
             self.problem.recorrect(model);
         }
+        self.judge_again();
+    }
+
+    /// Judges the leading fits by the data and steps as they are now.
+    fn judge_again(&mut self) {
         self.disturbance = Stretches::new(self.problem, Part::Fit);
         let keys: Vec<SetKey> = self.beam.within(JUDGED_AGAIN).map(Fit::key).collect();
         let job = |key: &SetKey| self.problem.job(&self.beam.get(key)?.model, Grain::Coarse);
@@ -137,6 +142,23 @@ impl<'a, 'b> Study<'a, 'b> {
                 }
                 _ => self.beam.remove(key),
             }
+        }
+    }
+
+    /// Fits the leading models by the integrator's own steps, so that none is favoured by a correction
+    /// that was made about another.
+    pub fn settle(&mut self, within: f64, iterations: usize) {
+        let models: Vec<Model> = self.beam.within(within).map(|fit| fit.model.clone()).collect();
+        if self.problem.has_own_steps() || models.len() < 2 {
+            return;
+        }
+        self.problem.take_own_steps(&models.iter().collect::<Vec<_>>());
+        self.judge_again();
+        for free in [false, true] {
+            let close = self.beam.within(within).filter(|fit| fit.free == free);
+            let wish = |fit: &Fit| Wish { model: fit.model.clone(), noise: fit.noise.clone() };
+            let wishes: Vec<Wish> = close.map(wish).collect();
+            self.fit_and_keep(free, &wishes, iterations);
         }
     }
 

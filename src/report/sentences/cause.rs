@@ -51,7 +51,9 @@ pub fn is_resolved(cause: &Cause) -> bool {
 
 /// How sure the law is, where hypotheses were compared: ` (98 %)`.
 fn sure(cause: &Cause) -> String {
-    cause.probability.map_or_else(String::new, |p| format!(" ({} sure)", percent(p)))
+    // no comparison of models makes a cause certain
+    let said = |p: f64| if p > 0.995 { "> 99 %".into() } else { percent(p) };
+    cause.probability.map_or_else(String::new, |p| format!(" ({} sure)", said(p)))
 }
 
 /// What it is needed for, which is no share of a whole: causes that make up for each other are
