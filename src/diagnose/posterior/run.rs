@@ -196,22 +196,6 @@ fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
 
 /// The headline after the veto, with its look-alikes.
 fn told(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched> {
-    if std::env::var("TRACE").is_ok() {
-        let mut all: Vec<&Fit> = study.beam.fits().collect();
-        all.sort_by(|a, b| b.posterior().total_cmp(&a.posterior()));
-        for fit in all.iter().take(25) {
-            eprintln!(
-                "TRACE {:.1} L {:.1} occ {:.1} prior {:.1} free {} {:?}",
-                fit.posterior(),
-                fit.likelihood,
-                fit.occam,
-                fit.prior,
-                fit.free,
-                fit.key().names
-            );
-        }
-        eprintln!("TRACE of {} left {:.1}", all.len(), left(&study, &all[0].model));
-    }
     let headline = study.beam.headline().cloned()?;
     let (headline, withdrawn) = vetoed(&mut study, headline);
     let nothing = study.beam.probability(|fit| !fit.free && fit.causes() == 0);
