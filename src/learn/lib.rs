@@ -3,6 +3,7 @@
 
 pub mod encoder;
 pub mod lfr;
+#[doc(hidden)]
 pub mod network;
 pub mod train;
 

@@ -51,20 +51,29 @@ mod slopes;
 mod started;
 mod window;
 
-pub use baseline::{Baseline, Course, Outputs};
+pub use baseline::Baseline;
 pub use error::EncoderError;
 pub use initialise::{
-    About, EncoderInitialiser, Innovation, LeastSquares, Linearised, Prefit, PrefitStart, Random,
-    Reconstruct,
+    EncoderInitialiser, Innovation, LeastSquares, Linearised, Prefit, Random, Reconstruct,
 };
-pub use learned::Learned;
 pub use linear::LinearEncoder;
-pub use reconstruct::{LinearMap, Reconstruction};
+pub use reconstruct::LinearMap;
 pub use resnet::ResNetEncoder;
-pub use sampled::SampledLinear;
-pub use scaling::{Scaling, Spread};
-pub use started::{Started, StateError};
+pub use scaling::Scaling;
+pub use started::Started;
 pub use window::Window;
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    baseline::{Course, Outputs},
+    initialise::{About, PrefitStart},
+    learned::Learned,
+    reconstruct::Reconstruction,
+    sampled::SampledLinear,
+    scaling::Spread,
+    started::StateError,
+};
 
 use crate::network::ResNet;
 use serde::{Deserialize, Serialize};
