@@ -15,36 +15,19 @@
 
 use nalgebra::DMatrix;
 
+use super::left_over::LeftOver;
 use super::modes::Mode;
+use super::mover::Mover;
 use super::tangent::Tangent;
 use crate::data::{Record, Signal};
 use crate::encoder::{Baseline as Known, Encoder, EncoderError, Spread};
 use crate::estimate::linear;
-use crate::lfr::{Block, Interconnection, Sink, Source};
-use crate::statistics::{add_to_basis, dot, project};
+use crate::lfr::{Block, Interconnection, Sink};
 
 /// Samples that are looked at.
 const MOST: usize = 8192;
 /// Lags in samples that stand in where a record shows no mode for a state that is left.
 const LAGS: [f64; 4] = [3.0, 10.0, 30.0, 100.0];
-
-/// Something a network sees that does not come from an augmented state.
-struct Drive {
-    /// Its place among what the network sees.
-    at: usize,
-    /// As the network sees it: about its mean, over its spread.
-    values: Vec<f64>,
-}
-
-/// The network that moves the augmented states.
-struct Mover {
-    block: usize,
-    drives: Vec<Drive>,
-    /// Where it enters the baseline.
-    targets: Vec<Sink>,
-    /// For every augmented state: its place among what the network gives, and sees.
-    places: Vec<(usize, usize)>,
-}
 
 /// A mode with its states along the record.
 struct Candidate {
@@ -99,63 +82,6 @@ pub(super) fn start_from_data(
     }
 }
 
-impl Mover {
-    /// Of a model with augmented states; nothing where no network moves them all.
-    fn of(
-        model: &Interconnection,
-        known: &Known<'_>,
-        first: usize,
-    ) -> Result<Option<Self>, EncoderError> {
-        let course = known.simulate()?;
-        let into = |block: usize| {
-            let all = model.s.entries();
-            all.filter_map(move |(to, from, _)| match from {
-                Source::Block(b, o) if b == block => Some((to, o)),
-                _ => None,
-            })
-        };
-        let moves = |b: &usize| {
-            matches!(model.blocks[*b], Block::Network(_))
-                && into(*b).any(|(to, _)| to == Sink::State(first))
-        };
-        let Some(block) = (0..model.blocks.len()).find(moves) else { return Ok(None) };
-        let Block::Network(learned) = &model.blocks[block] else { return Ok(None) };
-        let mut targets: Vec<Sink> = vec![];
-        for other in
-            (0..model.blocks.len()).filter(|b| matches!(model.blocks[*b], Block::Network(_)))
-        {
-            targets.extend(into(other).map(|(to, _)| to));
-        }
-        targets.retain(|to| !matches!(to, Sink::State(i) if *i >= first));
-        let (inputs, _) = known.drives();
-        let (mut from_u, mut from_rest, mut seen) = (vec![], vec![], vec![]);
-        for (at, &(offset, scale)) in learned.input_scales.iter().enumerate() {
-            let Some((from, _)) = model.s.row(Sink::Block(block, at)).next() else { continue };
-            let scaled = |values: &[f64]| Drive {
-                at,
-                values: values.iter().map(|v| (v - offset) / scale).collect(),
-            };
-            match from {
-                Source::State(i) if i >= first => seen.push((i - first, at)),
-                Source::State(i) => from_rest.push(scaled(&course.states[i])),
-                Source::Input(i) => from_u.push(scaled(&inputs[i])),
-                Source::Block(0, i) if i >= first => {
-                    from_rest.push(scaled(&course.outputs[i - first]));
-                }
-                _ => {}
-            }
-        }
-        // inputs are what a record varies; states stand in where the network sees none
-        let drives = if from_u.is_empty() { from_rest } else { from_u };
-        let places = (first..model.states).map(|state| {
-            let given = into(block).find(|(to, _)| *to == Sink::State(state))?.1;
-            Some((given, seen.iter().find(|(i, _)| *i == state - first)?.1))
-        });
-        let places: Option<Vec<(usize, usize)>> = places.collect();
-        Ok(places.map(|places| Self { block, drives, targets, places }))
-    }
-}
-
 /// Why no mode was found.
 #[derive(Debug, thiserror::Error)]
 enum NotFound {
@@ -182,7 +108,7 @@ fn choose(
         return Err(NotFound::Still);
     }
     let tangent = Tangent::of(known)?;
-    let mut error = Errors::of(known, &tangent, &measured, part.clone())?;
+    let mut error = LeftOver::of(known, &tangent, &measured, part.clone())?;
     // what needs no state: a linear correction by what the network sees, and other first states
     let (course, n) = (known.simulate()?, known.shape().baseline_states);
     let targets: Vec<_> = mover.targets.iter().filter_map(|&to| tangent.enters(to)).collect();
@@ -270,7 +196,7 @@ fn pool(
     known: &Known<'_>,
     drives: &[Vec<f64>],
     measured: &[&[f64]],
-    error: &Errors,
+    error: &LeftOver,
     part: &std::ops::Range<usize>,
 ) -> Vec<Candidate> {
     let (n, added) = (known.shape().baseline_states, mover.places.len());
@@ -286,7 +212,7 @@ fn pool(
             start: 0.0,
             inputs: inputs.clone(),
             outputs: outputs.map(|(i, y)| signal(format!("y{}", i + 1), y)).collect(),
-            segments: vec![0..part.len()],
+            segments: std::iter::once(0..part.len()).collect(),
         }
     };
     let shown = record(measured.iter().map(|y| y[part.clone()].to_vec()).collect());
@@ -304,78 +230,4 @@ fn pool(
         pool.extend(modes.into_iter().filter_map(|mode| Candidate::of(mode, drives, segments)));
     }
     pool
-}
-
-/// The error of a baseline, and the space of what has been taken out of it.
-struct Errors {
-    /// One series per output behind the other.
-    series: Vec<f64>,
-    /// What is left, every output over its spread, 0 where nothing was measured.
-    left: Vec<f64>,
-    /// Weights of the samples.
-    weights: Vec<f64>,
-    basis: Vec<Vec<f64>>,
-    whole: f64,
-}
-
-impl Errors {
-    fn of(
-        known: &Known<'_>,
-        tangent: &Tangent,
-        measured: &[&[f64]],
-        part: std::ops::Range<usize>,
-    ) -> Result<Self, EncoderError> {
-        let course = known.simulate()?;
-        let y: Vec<&[f64]> = measured.iter().map(|y| &y[part.clone()]).collect();
-        let series = if known.is_looped() {
-            let (inputs, _) = known.drives();
-            let u: Vec<&[f64]> = inputs.iter().map(|u| &u[part.clone()]).collect();
-            let start: Vec<f64> = course.states.iter().map(|x| x[part.start]).collect();
-            tangent.followed(&u, &y, &start)
-        } else {
-            let errors = y
-                .iter()
-                .zip(&course.outputs)
-                .map(|(y, own)| y.iter().zip(&own[part.clone()]).map(|(y, own)| y - own).collect());
-            tangent.residuals(&errors.collect::<Vec<Vec<f64>>>())
-        };
-        let weights = series.chunks_exact(part.len()).zip(&y).flat_map(|(e, y)| {
-            let over = 1.0 / Spread::of(y).scale;
-            e.iter().map(move |e| if e.is_finite() { over } else { 0.0 })
-        });
-        let weights: Vec<f64> = weights.collect();
-        let left = weighed(&series, &weights);
-        let whole = dot(&left, &left).max(f64::MIN_POSITIVE);
-        Ok(Self { series, left, weights, basis: vec![], whole })
-    }
-
-    fn square(&self) -> f64 {
-        dot(&self.left, &self.left)
-    }
-
-    /// Takes a direction out of what is left.
-    fn take_out(&mut self, column: Vec<f64>) {
-        let before = self.basis.len();
-        add_to_basis(&mut self.basis, weighed(&column, &self.weights));
-        project(&self.basis[before..], &mut self.left);
-    }
-
-    /// How much the square would fall if these directions were taken out.
-    fn gain(&self, columns: Vec<Vec<f64>>) -> f64 {
-        let mut more: Vec<Vec<f64>> = vec![];
-        for column in columns {
-            let mut column = weighed(&column, &self.weights);
-            let before = dot(&column, &column);
-            project(&self.basis, &mut column);
-            // what is left by rounding is no direction
-            if dot(&column, &column) > 1e-12 * before {
-                add_to_basis(&mut more, column);
-            }
-        }
-        more.iter().map(|column| dot(column, &self.left).powi(2)).sum()
-    }
-}
-
-fn weighed(values: &[f64], weights: &[f64]) -> Vec<f64> {
-    values.iter().zip(weights).map(|(v, w)| if *w == 0.0 { 0.0 } else { v * w }).collect()
 }

@@ -146,7 +146,7 @@ mod tests {
         }
         let mut states = 0;
         for mut mode in Mode::all(&a, &b, 0.1) {
-            let own = mode.run(std::slice::from_ref(&u), &[0..300]).unwrap();
+            let own = mode.run(std::slice::from_ref(&u), std::slice::from_ref(&(0..300))).unwrap();
             states += own.len();
             // every state of a mode is one linear combination of those of the whole
             let rows = DMatrix::from_fn(200, 3, |k, i| whole[k + 100][i]);
