@@ -29,7 +29,7 @@
 //! | find parameters and linear models | [`estimate`] |
 //! | ask how likely a record is, and which force is missing | [`likelihood`] |
 //! | find a cause | [`diagnose`], [`report`] |
-//! | learn what has no name | [`lfr`], [`network`], [`encoder`], [`train`] |
+//! | learn what has no name | [`lfr`], [`encoder`], [`train`] |
 //! | take a model elsewhere | [`export`] |
 //! | measure how often all this is right | [`study`] |
 //! | add a kind of one's own | [`register!`], [`prelude`], [`optimise`] |
@@ -51,18 +51,35 @@
 //! `docs/terms.md`, a way through the code in `docs/tour.md`, and how to add an effect, a system or an
 //! encoder in `docs/extending.md`.
 
+#[doc(no_inline)]
 pub use lacuna_core::{
-    data, digits, effect, evaluate, fault, file, look, model, optimise, prelude, real, register,
-    system, watch,
+    data, effect, evaluate, fault, file, look, model, optimise, prelude, real, register, system,
+    watch,
 };
-pub use lacuna_diagnose as diagnose;
 pub use lacuna_estimate as estimate;
 pub use lacuna_export as export;
-pub use lacuna_learn::{encoder, lfr, network, train};
+#[doc(no_inline)]
+pub use lacuna_learn::{encoder, lfr, train};
 pub use lacuna_likelihood as likelihood;
 pub use lacuna_plugins as plugins;
 pub use lacuna_report as report;
 pub use lacuna_study as study;
 
+/// Finds what a simulation gets wrong, names the cause and measures the gain; plans the experiment
+/// that distinguishes causes. [`Diagnosis`](diagnose::Diagnosis) is where to begin,
+/// [`Finding`](diagnose::Finding) what comes out.
+pub mod diagnose {
+    #[doc(inline)]
+    pub use lacuna_diagnose::{
+        Cause, DiagnoseError, Diagnosis, Distortion, Finding, Outlook, Planner, Verdict, distortion,
+    };
+    // the types of a finding's fields, which are reached through it
+    #[doc(hidden)]
+    pub use lacuna_diagnose::*;
+}
+
+// machinery that the program, the Python package and the macros of plug-ins use; it may change at any time
 #[doc(hidden)]
-pub use lacuna_core::{__private, per_isa, per_lanes};
+pub use lacuna_core::{__private, digits, per_isa, per_lanes};
+#[doc(hidden)]
+pub use lacuna_learn::network;

@@ -13,6 +13,7 @@ use std::fmt;
 /// Serialises as `call`, `input` or `work`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
+#[doc(hidden)]
 pub enum Kind {
     /// The call is wrong: an argument, an option, a length.
     Call,
@@ -113,6 +114,7 @@ pub trait Explain: std::error::Error {
 /// assert!(told(&error).starts_with("no/such/file.csv: cannot be read"));
 /// assert!(told(&error).contains("\n  try: "));
 /// ```
+#[doc(hidden)]
 pub fn told(error: &dyn Explain) -> String {
     match error.hint() {
         Some(hint) => format!("{error}\n  try: {hint}"),
@@ -135,6 +137,7 @@ pub fn told(error: &dyn Explain) -> String {
 /// assert_eq!(nearest("Force", known.into_iter()).as_deref(), Some("force"));
 /// assert_eq!(nearest("temperature", known.into_iter()), None);
 /// ```
+#[doc(hidden)]
 pub fn nearest<'a>(wanted: &str, known: impl Iterator<Item = &'a str>) -> Option<String> {
     let lower = wanted.to_lowercase();
     let mut best: Option<((bool, usize, f64), &str)> = None;

@@ -5,7 +5,9 @@
 extern crate self as lacuna;
 
 pub mod data;
+#[doc(hidden)]
 pub mod digits;
+#[doc(hidden)]
 pub mod disk;
 pub mod effect;
 pub mod evaluate;
@@ -16,6 +18,7 @@ pub mod model;
 pub mod optimise;
 pub mod real;
 pub mod register;
+#[doc(hidden)]
 pub mod statistics;
 pub mod system;
 pub mod watch;
@@ -28,11 +31,15 @@ pub mod __private {
 
 /// What a plug-in or a short program needs.
 pub mod prelude {
+    #[doc(no_inline)]
     pub use crate::effect::{
         CandidateEffect, Effect, EffectCard, Felt, Knob, Mechanism, Named, Needs, Places, Role,
         Search, ShapeOf, SignRule, Size, UnitRule, View,
     };
+    #[doc(no_inline)]
     pub use crate::model::{At, Fault, Physics, Signals, StateSpaceModel};
+    #[doc(no_inline)]
     pub use crate::real::Real;
+    #[doc(no_inline)]
     pub use serde::{Deserialize, Serialize};
 }

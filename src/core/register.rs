@@ -3,6 +3,7 @@
 use crate::effect::CandidateEffect;
 
 /// What a plug-in can be.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy)]
 pub enum PlugIn {
     /// A model; `example` is the body of its table in a model file.
@@ -15,6 +16,7 @@ pub enum PlugIn {
 }
 
 /// A registered plug-in.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy)]
 pub struct Card {
     /// Name in model files.
@@ -31,6 +33,7 @@ inventory::collect!(Card);
 ///
 /// A plug-in crate that is a dependency but never named is not linked: write
 /// `use that_crate as _;` once.
+#[doc(hidden)]
 pub fn registered() -> Vec<&'static Card> {
     let mut cards: Vec<_> = inventory::iter::<Card>.into_iter().collect();
     cards.sort_by_key(|card| card.name);
@@ -38,11 +41,13 @@ pub fn registered() -> Vec<&'static Card> {
 }
 
 /// All registered models.
+#[doc(hidden)]
 pub fn models() -> Vec<&'static Card> {
     registered().into_iter().filter(|c| matches!(c.plug_in, PlugIn::Model { .. })).collect()
 }
 
 /// All registered effects, each with one that changes nothing.
+#[doc(hidden)]
 pub fn effects() -> Vec<(&'static Card, Box<dyn CandidateEffect>)> {
     registered()
         .into_iter()

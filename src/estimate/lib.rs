@@ -6,12 +6,19 @@ use lacuna_core::{
 };
 
 mod fit;
+#[doc(hidden)]
 pub mod law;
 mod linear;
 mod rank;
 
 pub use fit::{Estimate, Estimated, estimate};
-pub use fit::{estimate_by, estimate_with};
-pub use linear::{LinearError, LinearEstimate, LinearParameter, Mode, linear};
-pub use linear::{linear_baseline, linear_with};
-pub use rank::Combination;
+pub use linear::{LinearError, LinearEstimate, linear};
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    fit::{estimate_by, estimate_with},
+    linear::Mode,
+    linear::{LinearParameter, linear_baseline, linear_with},
+    rank::Combination,
+};

@@ -24,6 +24,7 @@ use std::path::{Path, PathBuf};
 use system::{Recorded, System};
 
 pub use error::ExportError;
+#[doc(hidden)]
 pub use vector::Vector;
 
 /// What a model is written as.

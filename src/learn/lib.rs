@@ -3,7 +3,11 @@
 
 pub mod encoder;
 pub mod lfr;
+#[doc(hidden)]
 pub mod network;
 pub mod train;
 
-use lacuna_core::{data, disk, effect, fault, model, optimise, per_lanes, real, register, system};
+use lacuna_core::{
+    data, disk, effect, fault, model, optimise, per_lanes, real, register, statistics, system,
+};
+use lacuna_estimate as estimate;

@@ -7,8 +7,8 @@
 
 use super::kalman::Kalman;
 use super::noise::{Layout, Noise};
+use super::parametrised::Model;
 use super::path::Path;
-use super::predictor::Model;
 use crate::system::{Drive, System, Transition};
 
 /// Degrees of freedom of the tail that scores a gated innovation: heavy, with a finite mean and variance.

@@ -33,6 +33,7 @@ mod laws;
 mod missing;
 mod model;
 mod noise;
+mod parametrised;
 mod path;
 mod places;
 mod predictor;
@@ -47,16 +48,24 @@ mod std_error;
 mod tangent;
 mod weigh;
 
-pub use autoregressive::Autoregression;
 pub use error::LikelihoodError;
-pub use explanation::{Explanation, NamedCause};
-pub use missing::{Explained, MissingForce};
-pub use model::{Fitted, NoiseModel};
-pub use noise::{Component, Noise, Slow};
+pub use missing::MissingForce;
+pub use noise::Noise;
 pub use places::places;
 pub use predictor::{Innovations, Predictor};
-pub use ranked::{FittedLaws, RankedPlace, RankedPlaces};
-pub use scope::Scope;
+pub use ranked::RankedPlaces;
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    autoregressive::Autoregression,
+    explanation::{Explanation, NamedCause},
+    missing::Explained,
+    model::{Fitted, NoiseModel},
+    noise::{Component, Slow},
+    ranked::{FittedLaws, RankedPlace},
+    scope::Scope,
+};
 
 #[cfg(test)]
 mod tests;

@@ -11,8 +11,9 @@ use super::autoregressive::Autoregression;
 use super::error::LikelihoodError;
 use super::follow::{Start, Wanted};
 use super::noise::Noise;
+use super::parametrised::Model;
 use super::path::Path;
-use super::predictor::{Model, Predictor, column};
+use super::predictor::{Predictor, column};
 
 /// Renewals of the initial states of a free run at most.
 const STARTS: usize = 8;

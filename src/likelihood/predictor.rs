@@ -9,6 +9,7 @@ use statrs::distribution::{ContinuousCDF, Normal};
 use super::error::LikelihoodError;
 use super::follow::{Followed, Start, Wanted, follow};
 use super::noise::{Layout, Noise};
+use super::parametrised::Model;
 use super::path::Path;
 use super::replay::Pass;
 use super::scope::Scope;
@@ -21,13 +22,6 @@ const CHANCE: f64 = 0.01;
 
 /// How far a free run may leave the measured range before its states say nothing about theirs.
 const ASTRAY: f64 = 10.0;
-
-/// One hypothesis: a plan with its effects, and the parameters' values.
-#[derive(Debug, Clone)]
-pub(crate) struct Model {
-    pub plan: Plan,
-    pub theta: Vec<f64>,
-}
 
 /// A system and records, compiled for prediction.
 #[derive(Debug, Clone)]

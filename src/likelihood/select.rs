@@ -11,8 +11,9 @@ use super::error::LikelihoodError;
 use super::follow::{Followed, Wanted};
 use super::intensities::{concentrated, most_likely};
 use super::noise::{Component, Noise, Slow};
+use super::parametrised::Model;
 use super::path::Path;
-use super::predictor::{Model, Predictor};
+use super::predictor::Predictor;
 use super::replay::Pass;
 
 /// Sizes that a component is begun with, in units of its signal's variance.

@@ -13,6 +13,7 @@ mod cause;
 mod chart;
 mod column;
 mod distortion;
+#[doc(hidden)]
 pub mod documents;
 mod escape;
 mod figure;
@@ -36,15 +37,21 @@ use std::path::Path;
 use crate::diagnose::{Finding, Outlook, Verdict};
 use crate::digits::number;
 use crate::system::System;
-pub use documents::{Beside, Document, cause_document};
-pub use figure::{Figure, Role, Scale};
 pub use missing::MissingReport;
-pub use page::{Cell, Page, share};
-pub use provenance::{FileUsed, Provenance};
-pub use read_back::ReadBack;
+pub use provenance::Provenance;
+pub use training::TrainingReport;
 
-pub use learned::LearnedCurve;
-pub use training::{Shown, TrainingReport};
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    documents::{Beside, Document, cause_document},
+    figure::{Figure, Role, Scale},
+    learned::LearnedCurve,
+    page::{Cell, Page, share},
+    provenance::FileUsed,
+    read_back::ReadBack,
+    training::Shown,
+};
 
 /// The report of a diagnosis: one self-contained HTML page.
 ///

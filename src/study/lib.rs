@@ -24,20 +24,30 @@ mod run;
 mod share;
 
 pub use error::StudyError;
-pub use exam::{
-    Answer, Answered, Answers, Calibration, Case, CaseFile, CaseTruth, Concealed, Conditions, Exam,
-    ExamResult, Hidden, Hit, Kind, Machine, Marks, Named, Noise, Number, Outside, Tally, Written,
-};
-pub use figures::StudyReport;
-pub use generate::{Generate, Generated, Truth};
-pub use job::{Done, Frame, Job};
-pub use monte_carlo::{MonteCarlo, Start};
-pub use noise_study::{Level, NoiseStudy};
-pub use rehearse::{Rehearsal, Rehearsed};
-pub use result::{Quartiles, StudyResult, Summary};
+pub use exam::{Exam, ExamResult};
+pub use generate::Generate;
+pub use monte_carlo::MonteCarlo;
+pub use noise_study::NoiseStudy;
+pub use rehearse::Rehearsal;
+pub use result::StudyResult;
 
-pub use monte_carlo::Inputs;
-pub use share::Share;
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    exam::{
+        Answer, Answered, Answers, Calibration, Case, CaseFile, CaseTruth, Concealed, Conditions,
+        Hidden, Hit, Kind, Machine, Marks, Named, Noise, Number, Outside, Tally, Written,
+    },
+    figures::StudyReport,
+    generate::Generated,
+    generate::Truth,
+    job::{Done, Frame, Job},
+    monte_carlo::{Inputs, Start},
+    noise_study::Level,
+    rehearse::Rehearsed,
+    result::{Quartiles, Summary},
+    share::Share,
+};
 
 /// What shard `i` of `n`, counted from 1, does of some work: every n-th piece.
 fn shard<T>(work: Vec<T>, i: usize, n: usize) -> Result<Vec<T>, StudyError> {

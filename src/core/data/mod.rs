@@ -48,19 +48,25 @@ mod split;
 mod step;
 mod table;
 mod text;
+#[doc(hidden)]
 pub mod unit;
 mod write;
 
-pub use bare::Bare;
 pub use error::DataError;
-pub use excite::{
-    Excitation, FilteredNoise, Lines, Multisine, Phases, Prbs, Sequence, Steps, crest_factor,
-};
-pub use matching::{Want, read_for};
-pub use periods::Periods;
-pub use random::Random;
-pub use reading::Reading;
+pub use excite::{Excitation, FilteredNoise, Lines, Multisine, Phases, Prbs, Sequence, Steps};
 pub use record::{Record, Signal};
-pub use remark::Remark;
-pub use step::Step;
-pub use table::{Column, Table};
+pub use table::Table;
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    bare::Bare,
+    excite::crest_factor,
+    matching::{Want, read_for},
+    periods::Periods,
+    random::Random,
+    reading::Reading,
+    remark::Remark,
+    step::Step,
+    table::Column,
+};

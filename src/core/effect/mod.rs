@@ -17,12 +17,19 @@ mod view;
 mod written;
 
 pub use card::{EffectCard, Knob, Mechanism, Named, Needs, Places, Role, SignRule};
-pub use curve::curve;
-pub use definition::{DefinedParameter, DefinedRole, Definition};
-pub use error::{DefinitionError, DefinitionProblem};
-pub use law::{CandidateEffect, Effect, EffectBlock, EffectCall, Felt, Shape};
-pub use properties::{Properties, ShapeOf, Size};
+pub use law::{CandidateEffect, Effect, Felt};
+pub use properties::{ShapeOf, Size};
 pub use search::Search;
 pub use unit::UnitRule;
 pub use view::View;
-pub use written::WrittenEffect;
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    curve::curve,
+    definition::{DefinedParameter, DefinedRole, Definition},
+    error::{DefinitionError, DefinitionProblem},
+    law::{EffectBlock, EffectCall, Shape},
+    properties::Properties,
+    written::WrittenEffect,
+};

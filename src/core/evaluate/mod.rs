@@ -9,6 +9,12 @@ mod want;
 
 pub use error::EvaluateError;
 pub use metric::Metrics;
-pub use run::{Init, Run, drive, measured};
+pub use run::Init;
 pub use simulate::Simulation;
-pub use want::want;
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    run::{Run, drive, measured},
+    want::want,
+};

@@ -28,12 +28,21 @@ use std::path::Path;
 
 use crate::system::System;
 
-pub use crate::disk::{read_regular, write_hint, write_text, write_whole};
-pub use complaint::Complaint;
 pub use document::{Document, Format};
 pub use error::FileError;
-pub use source::Spot;
-pub use write::{save, save_with, to_json, to_toml, to_toml_with};
+pub use write::{save, to_toml};
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    complaint::Complaint,
+    source::Spot,
+    write::{save_with, to_toml_with},
+};
+#[doc(hidden)]
+pub use crate::disk::{read_regular, write_hint, write_text, write_whole};
+#[doc(hidden)]
+pub use write::to_json;
 
 /// Reads a model file, as TOML or JSON by its ending, else by its text, and checks that
 /// the system can be simulated.

@@ -18,9 +18,11 @@ mod words;
 use crate::data::Record;
 use serde::Serialize;
 
-pub use lags::Response;
-pub use signal::{Clipped, SignalLook};
-pub use spectra::{Coherence, Line};
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    lags::Response, signal::Clipped, signal::SignalLook, spectra::Coherence, spectra::Line,
+};
 
 /// What a record is like.
 ///
@@ -61,6 +63,7 @@ pub struct Look {
 }
 
 /// Inputs that repeat.
+#[doc(hidden)]
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Period {
     /// Samples in one period.

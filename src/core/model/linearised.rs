@@ -18,6 +18,7 @@ mod tests;
 /// Where a model is linearised.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
+#[doc(hidden)]
 pub struct Point {
     /// States.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]

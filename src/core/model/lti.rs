@@ -9,12 +9,14 @@ use super::law::Matrices;
 use super::{At, Fault, Parameter, Physics, Signals, State};
 use crate::real::Real;
 
+#[doc(hidden)]
 pub use named::Named;
 use named::names;
 
 /// Whether the matrices give derivatives or next states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
+#[doc(hidden)]
 pub enum LtiTime {
     /// x_{k+1} = A x_k + B u_k.
     #[default]

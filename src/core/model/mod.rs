@@ -15,16 +15,23 @@ pub mod lti;
 mod march;
 mod physical_law;
 mod physics;
+#[doc(hidden)]
 pub mod probe;
 mod signals;
 
 pub use at::At;
-pub use block::{Ask, Block, Call, DIRECTIONS, Dual32, Dual64, Pull, PullCall, Sizes};
-pub use lane_number::LaneNumber;
-pub use law::{Fault, Law, Matrices};
-pub use march::call::{March, MarchCall, Stage, Way};
+pub use law::Fault;
 pub use physics::Physics;
 pub use signals::{Parameter, Quantity, Signal, Signals, State, TimeKind};
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    block::{Ask, Block, Call, DIRECTIONS, Dual32, Dual64, Pull, PullCall, Sizes},
+    lane_number::LaneNumber,
+    law::{Law, Matrices},
+    march::call::{March, MarchCall, Stage, Way},
+};
 
 /// A state-space model x' = f(x, u, w), y = h(x, u) that model files can name.
 ///
@@ -38,6 +45,7 @@ pub trait StateSpaceModel: Law {}
 /// # Errors
 ///
 /// If the model does not take these values.
+#[doc(hidden)]
 pub fn with_parameters(
     model: &dyn StateSpaceModel,
     changes: &[(String, f64)],
@@ -69,6 +77,7 @@ pub fn with_parameters(
 ///
 /// If the model does not survive its own serialisation, which the contract test rules out
 /// for registered models.
+#[doc(hidden)]
 pub fn copied(model: &dyn StateSpaceModel) -> Result<Box<dyn StateSpaceModel>, serde_json::Error> {
     serde_json::from_value(serde_json::to_value(model)?)
 }

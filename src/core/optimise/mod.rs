@@ -21,28 +21,37 @@ mod adam;
 mod bounds;
 mod error;
 mod lbfgs;
+#[doc(hidden)]
 pub mod levenberg;
 mod marquardt;
 mod named;
 mod objective;
 mod observe;
 mod schedule;
+#[doc(hidden)]
 pub mod shelf;
 mod stop;
 mod unknown;
 
-pub use adam::{Adam, AdamState, AdamStep};
-pub use bounds::{Bounds, Transformed};
+pub use adam::Adam;
 pub use error::OptimiseError;
 pub use lbfgs::Lbfgs;
-pub use levenberg::{Levenberg, Settings, Unknown};
 pub use marquardt::LevenbergMarquardt;
-pub use named::Named;
 pub use objective::{LeastSquares, Objective};
 pub use observe::{Observer, Outcome, Progress, Stopped};
 pub use schedule::Schedule;
 pub use stop::Stop;
-pub use stop::Watch;
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    adam::{AdamState, AdamStep},
+    bounds::Bounds,
+    bounds::Transformed,
+    levenberg::{Levenberg, Settings, Unknown},
+    named::Named,
+    stop::Watch,
+};
 
 /// A method that lowers an [`Objective`]; configuration files name it.
 ///

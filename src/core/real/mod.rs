@@ -16,9 +16,11 @@
 //!   (`sqrt` at 0) it is taken as 0.
 
 mod dual;
+#[doc(hidden)]
 pub mod elementary;
 #[cfg(target_arch = "x86_64")]
 mod fuse;
+#[doc(hidden)]
 #[cfg(target_arch = "x86_64")]
 pub mod fused;
 mod isa;
@@ -33,12 +35,15 @@ mod trace;
 mod x86;
 
 pub use dual::Dual;
-pub use isa::Isa;
+
+// machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
-pub use isa::recast;
-pub use lanes::{F32x16, F64x8, InRegisters, Lanes};
-pub use tape::{Binary, Given, Line, Node, Tape, Term, Unary};
-pub use trace::Trace;
+pub use self::{
+    isa::{Isa, recast},
+    lanes::{F32x16, F64x8, InRegisters, Lanes},
+    tape::{Binary, Given, Line, Node, Tape, Term, Unary},
+    trace::Trace,
+};
 
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, MulAssign, Neg, Sub, SubAssign};

@@ -31,17 +31,23 @@ use crate::effect::WrittenEffect;
 use crate::model::{Signals, StateSpaceModel, copied};
 use crate::real::F64x8;
 
-pub use engine::{Jacobian, Transition};
 pub use error::SystemError;
-pub use lane::{Drive, Lane, Route, Track};
-pub use placed::{AlsoInto, Placed};
-pub use plan::{Base, MOST_SUBSTEPS, Plan, Slot, Way};
-pub use rates::points;
-pub use recorded::{Recorded, RecordedParameter, Remembered};
+pub use placed::Placed;
 pub use sampling::{Hold, Integrator, Method, Sampling};
-pub use sight::{Found, Sight, find};
-pub use tables::Origin;
-pub use wiring::EffectNumber;
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    engine::{Jacobian, Transition},
+    lane::{Drive, Lane, Route, Track},
+    placed::AlsoInto,
+    plan::{Base, MOST_SUBSTEPS, Plan, Slot, Way},
+    rates::points,
+    recorded::{Recorded, RecordedParameter, Remembered},
+    sight::{Found, Sight, find},
+    tables::Origin,
+    wiring::EffectNumber,
+};
 
 /// A model, how it is sampled, and the effects that extend it.
 ///

@@ -51,20 +51,29 @@ mod slopes;
 mod started;
 mod window;
 
-pub use baseline::{Baseline, Course, Outputs};
+pub use baseline::Baseline;
 pub use error::EncoderError;
 pub use initialise::{
-    About, EncoderInitialiser, Innovation, LeastSquares, Linearised, Prefit, PrefitStart, Random,
-    Reconstruct,
+    EncoderInitialiser, Innovation, LeastSquares, Linearised, Prefit, Random, Reconstruct,
 };
-pub use learned::Learned;
 pub use linear::LinearEncoder;
-pub use reconstruct::{LinearMap, Reconstruction};
+pub use reconstruct::LinearMap;
 pub use resnet::ResNetEncoder;
-pub use sampled::SampledLinear;
-pub use scaling::{Scaling, Spread};
-pub use started::{Started, StateError};
+pub use scaling::Scaling;
+pub use started::Started;
 pub use window::Window;
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    baseline::{Course, Outputs},
+    initialise::{About, PrefitStart},
+    learned::Learned,
+    reconstruct::Reconstruction,
+    sampled::SampledLinear,
+    scaling::Spread,
+    started::StateError,
+};
 
 use crate::network::ResNet;
 use serde::{Deserialize, Serialize};
@@ -151,6 +160,21 @@ pub trait Encoder: std::fmt::Debug + Send + Sync {
     /// If there is no linear part or the map has another width.
     fn set_linear(&mut self, map: &LinearMap) -> Result<(), EncoderError> {
         let _ = map;
+        self.without_linear_part()
+    }
+
+    /// The same for the states from number `first` on; what it says about others stays.
+    ///
+    /// # Errors
+    ///
+    /// As [`Encoder::set_linear`].
+    fn set_linear_from(&mut self, first: usize, map: &LinearMap) -> Result<(), EncoderError> {
+        if first == 0 { self.set_linear(map) } else { self.without_linear_part() }
+    }
+
+    /// The refusal of an encoder that has no linear part.
+    #[doc(hidden)]
+    fn without_linear_part(&self) -> Result<(), EncoderError> {
         let encoder = self.typetag_name().to_string();
         Err(EncoderError::NoLinearPart { initialiser: "set_linear", encoder })
     }

@@ -2,7 +2,6 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::order::Graph;
 use super::{Block, LfrError, Matrix, Sink, Source};
 
 /// An augmented model, Hoekstra et al., eq. `augmentation_structure`:
@@ -108,14 +107,6 @@ impl Interconnection {
             }
         }
         Ok(())
-    }
-
-    /// The loops of S without a state in them, each as the signals along it; such a model is
-    /// solved by Newton's method in every sample.
-    pub fn algebraic_loops(&self) -> Vec<Vec<String>> {
-        let graph = Graph::new(self);
-        let loops = graph.order().into_iter().filter(|group| graph.is_loop(group));
-        loops.map(|group| graph.path(&group)).collect()
     }
 
     /// Number of parameters that training changes; see [`Self::parameters`].

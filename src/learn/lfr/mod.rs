@@ -36,14 +36,17 @@ mod structure;
 mod work;
 
 pub use block::{Baseline, Block, Learned};
-pub use closed_loop::{ClosedLoop, Controller, Replay};
+pub use closed_loop::{ClosedLoop, Controller};
 pub use error::LfrError;
 pub use interconnection::Interconnection;
-pub use matrix::{Entry, Matrix};
-pub use sampled::Sampled;
+pub use matrix::Matrix;
 pub use signal::{Sink, Source};
 pub use standalone::AugmentedModel;
-pub use structure::{Form, Scales, Structure};
+pub use structure::{Form, Structure};
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{closed_loop::Replay, matrix::Entry, sampled::Sampled, structure::Scales};
 
 pub(crate) use engine::Engine;
 pub(crate) use number::Number;

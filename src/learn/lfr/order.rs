@@ -140,6 +140,16 @@ impl Graph {
     }
 }
 
+impl Interconnection {
+    /// The loops of S without a state in them, each as the signals along it; such a model is
+    /// solved by Newton's method in every sample.
+    pub fn algebraic_loops(&self) -> Vec<Vec<String>> {
+        let graph = Graph::new(self);
+        let loops = graph.order().into_iter().filter(|group| graph.is_loop(group));
+        loops.map(|group| graph.path(&group)).collect()
+    }
+}
+
 /// State of Tarjan's search.
 struct Search<'a> {
     graph: &'a Graph,

@@ -18,7 +18,11 @@ mod error;
 mod fit;
 mod groups;
 mod guess;
+mod hidden;
+mod left_over;
 mod looped;
+mod modes;
+mod mover;
 mod orthogonal;
 mod recipe;
 mod run;
@@ -28,24 +32,36 @@ mod settings;
 mod shooting;
 mod sparse;
 mod steps;
+mod tangent;
 mod trainer;
 mod validate;
 mod whole;
 
-pub use ablate::{Ablation, ablate, warnings};
-pub use added::Contribution;
-pub use augmented::{Augmented, Run};
+pub use augmented::Augmented;
 pub use checkpoint::Checkpoint;
-pub use disguise::{Change, Disguise};
-pub use entered::{Added, Coordinate};
 pub use error::TrainError;
-pub use fit::{Ended, Epoch, Fit, Follow};
-pub use groups::{Group, GroupKind};
+pub use fit::Fit;
 pub use recipe::Recipe;
-pub use settings::{Finish, Growing, Mask, Weights};
-pub use shooting::{Arithmetic, MultipleShooting, Shooting};
+pub use shooting::MultipleShooting;
 pub use sparse::Sparse;
 pub use trainer::Trainer;
-pub use validate::{Score, Validation};
+pub use validate::Score;
 
-pub use checkpoint::Fingerprint;
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    ablate::warnings,
+    ablate::{Ablation, ablate},
+    added::Contribution,
+    augmented::Run,
+    checkpoint::Fingerprint,
+    disguise::{Change, Disguise},
+    entered::{Added, Coordinate},
+    fit::Epoch,
+    fit::{Ended, Follow},
+    groups::{Group, GroupKind},
+    recipe::AugmentedStart,
+    settings::{Finish, Growing, Mask, Weights},
+    shooting::{Arithmetic, Shooting},
+    validate::Validation,
+};

@@ -5,13 +5,12 @@
 //! value plus w. So an offset of -0.08 rad on `angle` reads 0.08 rad too low.
 
 use super::column;
-use super::size::{amplitude, factor, found_shape, unresolved, wave};
+use super::size::{factor, found_shape, unresolved, wave};
+use super::stated::{HALF, amplitude, headline_value};
 use crate::diagnose::{ActsWhere, Cause, InRecord, LawPart, Site, Value, Wording};
 use crate::digits::{interval, number, percent, spaced, with_unit};
 use crate::effect::Size;
 
-/// Standard errors within which a size is not told from 0: half of a 95 % interval.
-pub(super) const HALF: f64 = 2.0;
 /// The sentence of a cause, and what else is known of it.
 pub fn cause(cause: &Cause) -> String {
     let mut text = match &cause.wording.fault {
@@ -149,13 +148,6 @@ fn size(cause: &Cause) -> String {
             }
         },
     }
-}
-
-/// The number that is stated: the first coefficient, else the first number.
-pub(super) fn headline_value(cause: &Cause) -> Option<&Value> {
-    let first = cause.wording.first.as_deref();
-    let named = cause.parameters.iter().find(|v| first == Some(v.name.as_str()));
-    named.or(cause.parameters.first())
 }
 
 /// A coefficient with its sign in words where there are any.

@@ -10,15 +10,24 @@ mod notes;
 mod plan;
 mod rest;
 mod size;
+mod stated;
 
 #[cfg(test)]
 mod tests;
 
-pub use cause::{acts_where, cause, is_resolved, phrase, place_of};
-pub use notes::{note, notes};
-pub use plan::{experiment, look_alikes as pair, outlook, visibility};
-pub use rest::{details, gain, held, left, look_alikes, record, rmse, withdrawn};
-pub use size::formula;
+pub use cause::cause;
+
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    cause::{acts_where, is_resolved, phrase, place_of},
+    notes::note,
+    notes::notes,
+    plan::{experiment, look_alikes as pair, outlook, visibility},
+    rest::details,
+    rest::{gain, held, left, look_alikes, record, rmse, withdrawn},
+    size::formula,
+};
 
 use crate::diagnose::{Cause, Finding, Verdict};
 

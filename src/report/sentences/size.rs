@@ -1,7 +1,7 @@
 //! Sizes that are no plain coefficient: waves, factors, shapes without a name, and sizes that are told
 //! from none by no record.
 
-use super::cause::{HALF, headline_value};
+use super::stated::{HALF, amplitude, headline_value};
 use crate::diagnose::{Cause, FoundShape, Site};
 use crate::digits::{interval, number, percent, rough, spaced};
 use crate::effect::Size;
@@ -17,18 +17,6 @@ const FACTORS: [(&str, f64); 6] = [
 ];
 /// Relative difference at which a factor is one of these.
 const NEAR_FACTOR: f64 = 0.01;
-
-/// Amplitude and its standard error, those of sine and cosine taken as independent.
-pub(super) fn amplitude(cause: &Cause, sine: &str, cosine: &str) -> Option<(f64, Option<f64>)> {
-    let find = |name: &str| cause.parameters.iter().find(|v| v.name == name);
-    let (a, b) = (find(sine)?, find(cosine)?);
-    let size = a.value.hypot(b.value);
-    let error = a.std_error.zip(b.std_error).map(|(ea, eb)| match size > 0.0 {
-        true => (a.value * ea).hypot(b.value * eb) / size,
-        false => ea.hypot(eb),
-    });
-    Some((size, error))
-}
 
 /// a sin(n z) + b cos(n z) by amplitude, order and phase.
 pub(super) fn wave(cause: &Cause, order: &str, sine: &str, cosine: &str) -> String {

@@ -34,15 +34,19 @@ use serde::{Deserialize, Serialize};
 use super::{Ask, Block, Call, Fault, Law, MarchCall, Signals};
 use build::{Compiled, compile};
 
-pub use error::{EquationsError, Located};
-pub use expression::{Expression, Node, Operator};
-pub use formula::Formula;
-pub use function::{Function, Pair};
-pub use parse::{DEPTH, parse};
-pub use problem::{Expected, Problem, Role};
-pub use run::Stored;
-pub use table::{Channel, Coordinate, Entry, Input, Output, Parameter, State, Table, Variable};
-pub use token::Token;
+// machinery that sibling crates and the program share; it may change at any time
+#[doc(hidden)]
+pub use self::{
+    error::{EquationsError, Located},
+    expression::{Expression, Node, Operator},
+    formula::Formula,
+    function::{Function, Pair},
+    parse::{DEPTH, parse},
+    problem::{Expected, Problem, Role},
+    run::Stored,
+    table::{Channel, Coordinate, Entry, Input, Output, Parameter, State, Table, Variable},
+    token::Token,
+};
 
 /// A model written as equations: x' = f(x, u, w) as text, with named parameters.
 ///
@@ -79,6 +83,7 @@ pub use token::Token;
 /// ```
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(from = "Table", into = "Table")]
+#[doc(hidden)]
 pub struct Equations {
     table: Table,
     compiled: Result<Compiled, Vec<EquationsError>>,
