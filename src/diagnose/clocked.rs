@@ -1,11 +1,11 @@
 //! A wrong sampling time or a shifted column against a wrong model: which explains with less.
 
-use super::dependence::DEPENDS;
+use super::data_faults::Fault;
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
-use super::faults::Fault;
-use super::searched::Searched;
-use super::story::Track;
+use super::findings::hand_over::Searched;
+use super::fit::hypothesis::Track;
+use super::prepare::input_dependence::DEPENDS;
 use crate::data::Record;
 use crate::watch::Watch;
 

@@ -1,6 +1,6 @@
 //! What is asked of a diagnosis.
 
-use super::library::Allowed;
+use super::candidates::library::Allowed;
 use crate::data::Record;
 use crate::evaluate::Init;
 use crate::system::System;

@@ -1,13 +1,13 @@
 //! Data preprocessing before a search: gross errors, dead sensors, dropouts, readings that stand
 //! still, columns of the wrong sign (Ljung, System Identification, 1999, chapter 14).
 
-use super::cause::Cause;
+use super::data_faults::{Fault, dead, flipped, gross_errors, retimed, strike};
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
-use super::faults::{Fault, dead, flipped, gross_errors, retimed, strike};
-use super::limits::cut_off;
-use super::records::firsts;
-use super::stretches::horizon;
+use super::findings::cause::Cause;
+use super::prepare::joined_records::firsts;
+use super::prepare::known_clipping::cut_off;
+use super::segmentation::horizon;
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Simulation};
 

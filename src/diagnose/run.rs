@@ -2,21 +2,21 @@
 
 use std::time::Instant;
 
+use super::data_faults::coarse;
 use super::diagnosis::{Diagnosis, FIT, FIT_OF_ALL, TEST_OF_ALL, kept_from};
-use super::distortion::distortion;
 use super::error::DiagnoseError;
-use super::faults::coarse;
-use super::finding::{Finding, RecordFacts, Verdict};
+use super::findings::context::Source;
+use super::findings::distortion::distortion;
+use super::findings::finding::{Finding, RecordFacts, Verdict};
+use super::findings::hand_over::{Around, Looked, Searched};
 use super::innovations;
 use super::mended::Mended;
-use super::overlap::refuse_overlap;
-use super::prepared::{Prepared, windows};
-use super::records::firsts;
-use super::resolution::unresolved;
-use super::score::{Counted, TestData};
-use super::searched::{Around, Looked, Searched};
-use super::stretches::horizon;
-use super::teller::Source;
+use super::prepare::integration_error::unresolved;
+use super::prepare::joined_records::firsts;
+use super::prepare::prepared::{Prepared, windows};
+use super::segmentation::horizon;
+use super::validate::overlap::refuse_overlap;
+use super::validate::test_error::{Counted, TestData};
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run};
 use crate::watch::Watch;

@@ -9,10 +9,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use crate::candidate::Candidate;
+use crate::candidates::candidate::Candidate;
 use crate::criteria::{ALL_PARAMETERS, MORE, PER_NUMBER, SIZES, UNNAMED};
-use crate::nuisance::{Key, Nuisance, get};
-use crate::problem::{Added, Model, Problem};
+use crate::fit::nuisance::{Key, Nuisance, get};
+use crate::fit::problem::{Added, Model, Problem};
 
 /// How much there is to choose from.
 #[derive(Debug, Clone, Copy)]
@@ -91,7 +91,7 @@ pub(crate) fn width(problem: &Problem<'_>, nuisance: &Nuisance, model: &Model, k
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::posterior::fixture::{candidate, fit_of};
+    use crate::search::fixture::{candidate, fit_of};
 
     #[test]
     fn a_further_law_of_a_place_is_chosen_among_the_laws() {

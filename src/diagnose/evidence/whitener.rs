@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use super::noise::Autoregressive;
-use crate::problem::{Part, Problem};
+use crate::fit::problem::{Part, Problem};
 use crate::statistics::dot;
 
 /// A causal linear filter that makes a disturbance white.

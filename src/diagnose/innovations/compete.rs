@@ -2,8 +2,8 @@
 
 use crate::likelihood::{Fitted, LikelihoodError, NoiseModel, Predictor, Scope};
 
-use crate::library::Allowed;
-use crate::problem::{Grain, Model, Problem};
+use crate::candidates::library::Allowed;
+use crate::fit::problem::{Grain, Model, Problem};
 use crate::system::System;
 
 /// The predictor of the model that is diagnosed, on the samples of a problem.
@@ -78,5 +78,5 @@ pub(super) fn step(problem: &Problem<'_>) -> f64 {
 /// The free run of a model over all samples, root mean square in units of the outputs' scales.
 pub(super) fn left(problem: &Problem<'_>, model: &Model) -> Option<f64> {
     let y = problem.simulate(model, Grain::Fine)?;
-    Some(problem.mean_square(&y, crate::problem::Part::All).sqrt())
+    Some(problem.mean_square(&y, crate::fit::problem::Part::All).sqrt())
 }

@@ -1,12 +1,12 @@
 //! What has to be added at each channel for the model that was handed in to follow its records.
 
 use super::compete::predictor;
-use crate::cause::{ExplainedBy, MissingForce};
-use crate::finished::Finished;
-use crate::library::Allowed;
-use crate::note::Note;
-use crate::prepared::Prepared;
-use crate::searched::Searched;
+use crate::candidates::library::Allowed;
+use crate::findings::cause::{ExplainedBy, MissingForce};
+use crate::findings::hand_over::Searched;
+use crate::findings::note::Note;
+use crate::fit::finished::Finished;
+use crate::prepare::prepared::Prepared;
 
 /// Coordinates that are told of each channel.
 const TOLD: usize = 4;

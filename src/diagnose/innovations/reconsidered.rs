@@ -4,12 +4,12 @@ use crate::likelihood::Predictor;
 
 use super::compete::{Rivals, extended, left, predictor, step};
 use super::told::{carried_over, finished};
+use crate::candidates::library::Allowed;
 use crate::error::DiagnoseError;
-use crate::finished::Finished;
-use crate::library::Allowed;
-use crate::prepared::Prepared;
-use crate::problem::Part;
-use crate::refit::MANY;
+use crate::fit::finished::Finished;
+use crate::fit::problem::Part;
+use crate::fit::refit::MANY;
+use crate::prepare::prepared::Prepared;
 use crate::statistics::whiteness;
 use crate::watch::Watch;
 

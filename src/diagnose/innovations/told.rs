@@ -6,20 +6,20 @@ use std::sync::Arc;
 use crate::likelihood::{Component, Explanation, NamedCause, Noise, Predictor};
 use nalgebra::{DMatrix, DVector};
 
-use crate::candidate::{Candidate, Wire};
+use crate::candidates::candidate::{Candidate, Wire};
+use crate::candidates::library::{Allowed, library};
 use crate::criteria::LOOK_ALIKE;
 use crate::effect::Role;
 use crate::error::DiagnoseError;
-use crate::finished::Finished;
-use crate::found::{Belief, Found, SET, Slot};
-use crate::library::{Allowed, library};
-use crate::note::{Disturbance, Disturbs};
-use crate::nuisance::{Key, Nuisance};
-use crate::precision::Precision;
-use crate::prepared::Prepared;
-use crate::problem::{Added, Grain, Model, Part};
-use crate::refit::Fitted;
-use crate::story::Track;
+use crate::findings::note::{Disturbance, Disturbs};
+use crate::fit::covariance::Precision;
+use crate::fit::finished::Finished;
+use crate::fit::found::{Belief, Found, SET, Slot};
+use crate::fit::hypothesis::Track;
+use crate::fit::nuisance::{Key, Nuisance};
+use crate::fit::problem::{Added, Grain, Model, Part};
+use crate::fit::refit::Fitted;
+use crate::prepare::prepared::Prepared;
 use crate::system::Placed;
 
 /// A law as a cause of the library, and the standard errors of its knobs.

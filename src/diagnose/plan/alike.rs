@@ -2,7 +2,7 @@
 
 use super::{Outlook, Planner};
 use crate::data::Record;
-use crate::finding::Finding;
+use crate::findings::finding::Finding;
 use crate::system::System;
 use crate::watch::Watch;
 

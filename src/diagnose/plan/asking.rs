@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use super::look::{Asked, Look, Sensor};
 use super::planning::Planning;
-use crate::candidate::Candidate;
-use crate::nuisance::Nuisance;
-use crate::prepared::Prepared;
-use crate::probes::{Probe, Sharing, steer};
-use crate::problem::{Grain, Part, Problem, Span};
+use crate::candidates::candidate::Candidate;
+use crate::candidates::probes::{Probe, Sharing, steer};
+use crate::fit::nuisance::Nuisance;
+use crate::fit::problem::{Grain, Part, Problem, Span};
+use crate::prepare::prepared::Prepared;
 use crate::statistics::{deviation, median, rms};
 use crate::system::{Drive, Origin};
 

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use crate::candidate::Candidate;
-use crate::nuisance::{Nuisance, set};
-use crate::probes::Sharing;
-use crate::problem::{Grain, Job, Model, Part, Problem, Span};
+use crate::candidates::candidate::Candidate;
+use crate::candidates::probes::Sharing;
+use crate::fit::nuisance::{Nuisance, set};
+use crate::fit::problem::{Grain, Job, Model, Part, Problem, Span};
 use crate::statistics::{add_to_basis, dot, project};
 use crate::system::Track;
 

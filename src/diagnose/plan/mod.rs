@@ -24,16 +24,16 @@ mod outlook;
 mod planning;
 mod visible;
 
-use super::error::DiagnoseError;
-use super::floor::NoiseFloor;
-use super::floor::{Left, predicted, repeated};
-use super::library::Allowed;
-use super::prepared::{Prepared, windows};
-use super::problem::{Grain, Part};
+use crate::candidates::library::Allowed;
 use crate::data::Record;
+use crate::error::DiagnoseError;
 use crate::evaluate::EvaluateError;
+use crate::fit::problem::{Grain, Part};
+use crate::prepare::prepared::{Prepared, windows};
 use crate::statistics::deviation;
 use crate::system::System;
+use crate::validate::noise_floor::NoiseFloor;
+use crate::validate::noise_floor::{Left, predicted, repeated};
 use crate::watch::Watch;
 
 pub(crate) use visible::natural;

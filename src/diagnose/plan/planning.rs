@@ -7,13 +7,13 @@ use super::look::{Left, Look, with_sensors};
 use super::outlook::{Experiment, LookAlikes, Outlook};
 use super::visible::{shows, supposed, visibility};
 use super::{ALIKE, ENOUGH, experiments};
-use crate::candidate::{Candidate, Wire};
-use crate::floor::NoiseFloor;
-use crate::library::{Allowed, library};
-use crate::nuisance::Nuisance;
-use crate::prepared::Prepared;
-use crate::problem::Part;
-use crate::story::Track;
+use crate::candidates::candidate::{Candidate, Wire};
+use crate::candidates::library::{Allowed, library};
+use crate::fit::hypothesis::Track;
+use crate::fit::nuisance::Nuisance;
+use crate::fit::problem::Part;
+use crate::prepare::prepared::Prepared;
+use crate::validate::noise_floor::NoiseFloor;
 use crate::watch::Watch;
 
 /// A model and a record, about to be looked at.

@@ -3,7 +3,7 @@
 use super::SHOWS;
 use super::look::{Asked, Left};
 use super::outlook::{Supposed, Visibility};
-use crate::candidate::{Candidate, Preference, Wire};
+use crate::candidates::candidate::{Candidate, Preference, Wire};
 use crate::effect::Mechanism;
 
 pub(super) fn supposed(cause: &Candidate) -> Supposed {

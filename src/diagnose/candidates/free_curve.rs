@@ -1,0 +1,196 @@
+//! Free curves of every coordinate into every channel, to first order.
+
+use std::sync::Arc;
+
+use crate::candidates::candidate::Candidate;
+use crate::candidates::library::{Builder, Spot};
+use crate::candidates::smoothing::{Smoothed, bends, smoothed};
+use crate::effect::{Effect, View};
+use crate::fit::nuisance::Nuisance;
+use crate::fit::problem::{Grain, Job, Model, Part, Problem, Span};
+use crate::plugins::effects::free_form::FreeForm;
+use crate::prepare::operating_range::Nominal;
+use crate::statistics::project;
+use crate::system::Origin;
+
+/// The effect's name.
+pub(crate) const NAME: &str = "free_form";
+/// Knots of a curve, fewer first.
+const KNOTS: [usize; 3] = [9, 13, 19];
+/// Knots that a curve needs to be one.
+const FEWEST: usize = 4;
+/// Places that are looked at with other knots too.
+const LEADING: usize = 8;
+/// Probe, as a share of what moves the model as it moves anyway.
+pub(crate) const PROBE: f64 = 0.01;
+
+/// What curves are drawn from.
+pub(crate) struct Drawing<'a, 'b> {
+    pub problem: &'a Problem<'b>,
+    pub nominal: &'a Nominal,
+    pub nuisance: &'a Nuisance,
+}
+
+/// A curve to first order.
+pub(crate) struct Sketch {
+    pub cause: Arc<Candidate>,
+    pub values: Vec<f64>,
+    /// Standard errors of the values.
+    pub errors: Vec<f64>,
+    /// Share of what is left that it predicts where it was not fitted.
+    pub share: f64,
+}
+
+/// A model, what it leaves, and what nuisance makes up for.
+pub(crate) struct At<'a> {
+    pub model: &'a Model,
+    pub now: Vec<f64>,
+    pub basis: Vec<Vec<f64>>,
+}
+
+impl Drawing<'_, '_> {
+    /// The curves that predict most of what a model leaves, given its outputs; best first, one
+    /// per place.
+    pub fn sketches(&self, model: &Model, y: &[Vec<f64>]) -> Vec<Sketch> {
+        let now = self.problem.residual(y, Part::Fit);
+        let basis = self.nuisance.basis(self.problem, model, y);
+        let at = At { model, now, basis };
+        let best = |causes: &[Arc<Candidate>]| {
+            let drawn = causes.iter().filter_map(|cause| self.sketch(&at, cause));
+            drawn.max_by(|a, b| a.share.total_cmp(&b.share))
+        };
+        let places = self.places();
+        // all places with few knots, the leading ones with others too
+        let mut leading: Vec<(Sketch, &[Arc<Candidate>])> =
+            places.iter().filter_map(|causes| Some((best(&causes[..1])?, &causes[1..]))).collect();
+        leading.sort_by(|a, b| b.0.share.total_cmp(&a.0.share));
+        leading.truncate(LEADING);
+        let finer = leading.into_iter().map(|(few, causes)| match best(causes) {
+            Some(more) if more.share > few.share => more,
+            _ => few,
+        });
+        let mut sketches: Vec<Sketch> = finer.collect();
+        sketches.sort_by(|a, b| b.share.total_cmp(&a.share));
+        sketches
+    }
+
+    /// Curves without a value of every coordinate into every channel, and on the paths of
+    /// inputs and outputs; those of one place differ in their knots.
+    fn places(&self) -> Vec<Vec<Arc<Candidate>>> {
+        let base = self.problem.base.clone();
+        let lines = vec![];
+        let mut builder =
+            Builder { problem: self.problem, nominal: self.nominal, lines, found: vec![] };
+        let mut spots: Vec<(Spot, Vec<(usize, f64)>)> = vec![];
+        let groups = builder.channels();
+        let sources = builder.sources();
+        for group in &groups {
+            let target = group[0].0;
+            for &source in &sources {
+                let own = group.iter().any(|&(t, _)| {
+                    let origin = base.sources.entries[source].1;
+                    matches!(origin, Origin::Input(_)) && base.targets.entries[t].1 == origin
+                });
+                if !own {
+                    let spot = Spot { target, source: Some(source), own_path: false };
+                    spots.push((spot, group[1..].to_vec()));
+                }
+            }
+        }
+        for (target, (_, origin)) in base.targets.entries.iter().enumerate() {
+            if matches!(origin, Origin::Input(_) | Origin::Output(_)) {
+                let source = base.sources.at(*origin);
+                spots.push((Spot { target, source, own_path: true }, vec![]));
+            }
+        }
+        let mut places = vec![];
+        for (spot, others) in spots {
+            let Some(source) = spot.source else { continue };
+            let view = View::new(self.nominal.series(source), base.sampling_time);
+            if !(view.range() > 0.0) {
+                continue;
+            }
+            let of = base.sources.entries[source].0.name.clone();
+            let twins: Vec<_> = others
+                .iter()
+                .map(|&(t, by)| (base.targets.entries[t].0.name.clone(), Some(of.clone()), by))
+                .collect();
+            let first = builder.found.len();
+            for count in KNOTS {
+                let knots = knots(&view, count);
+                if knots.len() < FEWEST {
+                    continue;
+                }
+                let shape = FreeForm { values: vec![0.0; knots.len()], knots };
+                let card = Effect::card(&shape);
+                builder.push(NAME, &shape, &card, spot, 0.0, None, twins.clone());
+            }
+            let probe = PROBE * self.nominal.natural[spot.target];
+            let causes = builder.found.drain(first..);
+            let causes: Vec<_> =
+                causes.map(|cause| Arc::new(Candidate { probe, ..cause })).collect();
+            if !causes.is_empty() {
+                places.push(causes);
+            }
+        }
+        places
+    }
+
+    /// Curves without a value at the place of a law of the library, with its channels; they differ in
+    /// their knots.
+    pub fn in_place_of(&self, law: &Candidate) -> Vec<Candidate> {
+        let here = |curve: &Arc<Candidate>| curve.into == law.into && curve.of == law.of;
+        let rewired = |curve: Arc<Candidate>| Candidate {
+            also_into: law.also_into.clone(),
+            wire: law.wire.clone(),
+            twins: law.twins.clone(),
+            ..Candidate::clone(&curve)
+        };
+        self.places().into_iter().flatten().filter(here).map(rewired).collect()
+    }
+
+    /// One curve to first order, as smooth as what is left out asks for.
+    fn sketch(&self, at: &At<'_>, cause: &Arc<Candidate>) -> Option<Sketch> {
+        let n = cause.linear.len();
+        let step = cause.probe;
+        let job = |values: Vec<f64>| self.problem.job(&at.model.with(cause, values), Grain::Coarse);
+        let mut jobs: Vec<Job> = vec![];
+        for i in 0..n {
+            let mut values = vec![0.0; n];
+            values[i] = step;
+            jobs.push(job(values)?);
+        }
+        let mut left = at.now.clone();
+        project(&at.basis, &mut left);
+        let mut columns = vec![];
+        for y in self.problem.run(&jobs, Span::Fit) {
+            let r = self.problem.residual(y.as_ref()?, Part::Fit);
+            let mut column: Vec<f64> = at.now.iter().zip(&r).map(|(a, b)| (a - b) / step).collect();
+            project(&at.basis, &mut column);
+            columns.push(column);
+        }
+        let drawn = smoothed(&columns, &left, self.problem.y.len(), &bends(&knots_of(cause)))?;
+        let Smoothed { values, errors, share } = drawn;
+        Some(Sketch { cause: cause.clone(), values, errors, share })
+    }
+}
+
+/// Knots half way between those of equal spacing and those of equal use.
+fn knots(view: &View, count: usize) -> Vec<f64> {
+    let (low, high) = (view.quantile(0.001), view.quantile(0.999));
+    let at = |i: usize| {
+        let share = i as f64 / (count - 1) as f64;
+        0.5 * (low + (high - low) * share) + 0.5 * view.quantile(0.001 + 0.998 * share)
+    };
+    let mut knots: Vec<f64> = (0..count).map(at).collect();
+    knots.dedup_by(|a, b| (*a - *b).abs() < 1e-3 * view.range());
+    knots
+}
+
+/// The knots of a curve of unknown shape; none where a cause is none.
+pub(crate) fn knots_of(cause: &Candidate) -> Vec<f64> {
+    let table = serde_json::to_value(&cause.shape).unwrap_or_default();
+    let list = table.get(NAME).and_then(|fields| fields.get("knots"));
+    let list = list.and_then(serde_json::Value::as_array);
+    list.map_or_else(Vec::new, |list| list.iter().filter_map(serde_json::Value::as_f64).collect())
+}

@@ -1,0 +1,275 @@
+//! Every cause that could be at work: effects times places, less what is the same twice.
+
+use std::sync::Arc;
+
+use crate::candidates::candidate::{Candidate, Preference, Wire};
+use crate::effect::{
+    CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, Shape, SignRule, View, curve,
+};
+use crate::fit::problem::{Model, Problem};
+use crate::prepare::operating_range::Nominal;
+use crate::register;
+use crate::system::{Origin, Route};
+
+/// Which effects and parameters may be causes.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Allowed {
+    /// Only these effects; empty: all.
+    pub only: Vec<String>,
+    /// Not these.
+    pub without: Vec<String>,
+    /// Parameters that are held.
+    pub fixed: Vec<String>,
+    /// Whether noise may be inside the plant.
+    pub noise_inside: bool,
+}
+
+impl Allowed {
+    pub(crate) fn effect(&self, name: &str) -> bool {
+        (self.only.is_empty() || self.only.iter().any(|n| n == name))
+            && !self.without.iter().any(|n| n == name)
+    }
+}
+
+/// A place for an effect: entries of the target and source tables.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Spot {
+    pub(crate) target: usize,
+    pub(crate) source: Option<usize>,
+    pub(crate) own_path: bool,
+}
+
+pub(crate) struct Builder<'a, 'b> {
+    pub(crate) problem: &'a Problem<'b>,
+    pub(crate) nominal: &'a Nominal,
+    pub(crate) lines: Vec<f64>,
+    pub(crate) found: Vec<Candidate>,
+}
+
+/// All candidates for a model, given its residual lines (rad/s).
+pub(crate) fn library(
+    problem: &Problem<'_>,
+    nominal: &Nominal,
+    model: &Model,
+    lines: Vec<f64>,
+    allowed: &Allowed,
+) -> Vec<Arc<Candidate>> {
+    let mut builder = Builder { problem, nominal, lines, found: vec![] };
+    let groups = builder.channels();
+    let sources = builder.sources();
+    let registered = register::effects().into_iter().map(|(card, shape)| (card.name, shape));
+    let written = problem.system.written.iter().map(|own| (own.name(), own.boxed()));
+    for (name, shape) in registered.chain(written) {
+        if !allowed.effect(name) {
+            continue;
+        }
+        let declared = shape.card();
+        if declared.mechanism == Mechanism::Data {
+            continue;
+        }
+        if declared.places.parameter {
+            builder.parameters(name, shape.as_ref(), &declared, model, allowed);
+        }
+        builder.paths(name, shape.as_ref(), &declared);
+        if declared.places.channel {
+            for group in &groups {
+                builder.channel_paths(name, shape.as_ref(), &declared, group, &sources);
+            }
+        }
+        if declared.places.beside {
+            builder.beside(name, shape.as_ref(), &declared);
+        }
+    }
+    builder.found.into_iter().map(Arc::new).collect()
+}
+
+impl Builder<'_, '_> {
+    /// Own channels and inputs that push the same way, the preferred one first.
+    pub(crate) fn channels(&self) -> Vec<Vec<(usize, f64)>> {
+        let mut groups: Vec<Vec<(usize, f64)>> = vec![];
+        let mut order: Vec<usize> = (0..self.problem.base.targets.entries.len())
+            .filter(|&e| !matches!(self.problem.base.targets.entries[e].1, Origin::Output(_)))
+            .collect();
+        order.sort_by_key(|&e| self.preference(e));
+        for entry in order {
+            let same = groups.iter_mut().find_map(|group| {
+                self.nominal.parallel(group[0].0, entry).map(|factor| (group, factor))
+            });
+            match same {
+                Some((group, factor)) => group.push((entry, factor)),
+                None => groups.push(vec![(entry, 1.0)]),
+            }
+        }
+        groups
+    }
+
+    pub(crate) fn preference(&self, target: usize) -> Preference {
+        match self.problem.base.targets.entries[target].1 {
+            Origin::Own(_) if self.problem.base.declared_channels => Preference::DeclaredChannel,
+            Origin::Own(_) => Preference::DefaultChannel,
+            Origin::Input(_) => Preference::Input,
+            _ => Preference::Output,
+        }
+    }
+
+    /// Named sources except time, each value once.
+    pub(crate) fn sources(&self) -> Vec<usize> {
+        let base = &self.problem.base;
+        let mut kept: Vec<usize> = vec![];
+        for entry in 0..base.sources.named - 1 {
+            if !kept.iter().any(|&other| base.rates.same(other, entry)) {
+                kept.push(entry);
+            }
+        }
+        kept
+    }
+
+    pub(crate) fn time(&self) -> usize {
+        self.problem.base.sources.named - 1
+    }
+
+    /// Adds the candidates of one effect at one spot: one per pattern of absent bounds and
+    /// per choice.
+    #[allow(clippy::too_many_arguments)]
+    pub(crate) fn push(
+        &mut self,
+        name: &'static str,
+        shape: &dyn CandidateEffect,
+        card: &EffectCard,
+        spot: Spot,
+        push: f64,
+        rate: Option<(usize, f64)>,
+        twins: Vec<(String, Option<String>, f64)>,
+    ) {
+        let base = self.problem.base.clone();
+        let time = self.time();
+        let source = spot.source.unwrap_or(time);
+        let view = self.nominal.view(source, source == time, spot.own_path, &self.lines);
+        let search = shape.search(&view);
+        let fixed = |knob: &str| {
+            let own = card.own_path.iter().find(|(name, _)| *name == knob);
+            own.filter(|_| spot.own_path).map(|(_, value)| *value)
+        };
+        let mut patterns: Vec<(Vec<i64>, Vec<Vec<f64>>)> = vec![];
+        for mut start in search.starts {
+            for (value, knob) in start.iter_mut().zip(&card.knobs) {
+                *value = fixed(&knob.name).unwrap_or(*value);
+            }
+            let pattern: Vec<i64> = start
+                .iter()
+                .zip(&card.knobs)
+                .map(|(value, knob)| match knob.role {
+                    _ if value.is_infinite() => i64::MAX,
+                    Role::Choice => value.round() as i64,
+                    _ => 0,
+                })
+                .collect();
+            match patterns.iter_mut().find(|(known, _)| *known == pattern) {
+                Some((_, starts)) => starts.push(start),
+                None => patterns.push((pattern, vec![start])),
+            }
+        }
+        let sign = match card.sign {
+            SignRule::Any => 0.0,
+            SignRule::Opposing { polarity } => -push.signum() * f64::from(polarity),
+            SignRule::Along if push != 0.0 => push.signum(),
+            SignRule::Along => 0.0,
+            SignRule::Positive => 1.0,
+        };
+        let (target_signal, target_origin) = &base.targets.entries[spot.target];
+        let source_signal = &base.sources.entries[source].0;
+        let simple = card.properties.of_an_instrument;
+        let preference = self.preference(spot.target);
+        for (_, starts) in patterns {
+            let role = |i: &usize| card.knobs[*i].role;
+            let free = |i: &usize| fixed(&card.knobs[*i].name).is_none();
+            let finite = |i: &usize| starts[0][*i].is_finite();
+            let knobs = 0..card.knobs.len();
+            let linear: Vec<usize> =
+                knobs.clone().filter(|i| role(i) == Role::Coefficient && free(i)).collect();
+            let refine: Vec<usize> =
+                knobs.filter(|i| role(i) == Role::Shape && free(i) && finite(i)).collect();
+            let size = self.shape_size(shape, card, &starts[0], &linear, source, &view);
+            let natural = self.nominal.natural[spot.target];
+            let on_path = matches!(target_origin, Origin::Input(_) | Origin::Output(_));
+            let probe = match card.mechanism {
+                Mechanism::Delay | Mechanism::Lag => 0.4 * base.sampling_time,
+                _ if linear.is_empty() => 0.01,
+                _ => (if on_path { 1e-2 } else { 1e-3 }) * natural / size,
+            };
+            self.found.push(Candidate {
+                effect: name,
+                shape: shape.boxed(),
+                card: card.clone(),
+                into: target_signal.name.clone(),
+                of: spot.source.map(|_| source_signal.name.clone()),
+                also_into: vec![],
+                also_of: vec![],
+                wire: if spot.own_path {
+                    Wire::Path
+                } else {
+                    Wire::Stage(Route {
+                        source,
+                        rate: rate.unwrap_or((source, 0.0)),
+                        target: spot.target,
+                    })
+                },
+                preference: if simple { Preference::Simple } else { preference },
+                place: preference,
+                linear,
+                refine,
+                starts,
+                min: search.min.clone(),
+                max: search.max.clone(),
+                thresholds: search.thresholds,
+                sign,
+                probe,
+                push,
+                stiffness: if card.needs == Needs::Velocity { push.abs() } else { 0.0 },
+                named: Named {
+                    bare: self.is_bare(spot.source),
+                    own_path: spot.own_path,
+                    quantity: self.quantity(source),
+                },
+                units: (target_signal.unit.clone(), source_signal.unit.clone()),
+                twins: twins.clone(),
+            });
+        }
+    }
+
+    /// Whether nothing says what a source is.
+    fn is_bare(&self, source: Option<usize>) -> bool {
+        let unit = |source: usize| &self.problem.base.sources.entries[source].0.unit;
+        source.is_some_and(|source| unit(source).is_empty() && self.quantity(source).is_none())
+    }
+
+    /// Quantity of a source: as declared, or velocity where it is found to be one.
+    pub(crate) fn quantity(&self, source: usize) -> Option<crate::model::Quantity> {
+        let base = &self.problem.base;
+        let declared = base.sources.entries[source].0.quantity.clone();
+        declared.or_else(|| base.rates.is_rate(source).then(crate::model::Quantity::velocity))
+    }
+
+    /// Root mean square of w along the baseline for a coefficient of 1.
+    pub(crate) fn shape_size(
+        &self,
+        shape: &dyn CandidateEffect,
+        card: &EffectCard,
+        start: &[f64],
+        linear: &[usize],
+        source: usize,
+        view: &View,
+    ) -> f64 {
+        let Some(&first) = linear.first() else { return 1.0 };
+        let fallback = if view.rms > 0.0 { view.rms } else { 1.0 };
+        if card.states > 0 {
+            // an oscillator shaken at its own frequency
+            let rate = card.position(card.properties.resonance).map_or(1.0, |i| start[i]);
+            return fallback * rate;
+        }
+        let mut knobs = start.to_vec();
+        knobs[first] = 1.0;
+        let size = crate::statistics::rms(&curve(shape, &knobs, self.nominal.series(source)));
+        if size > 0.0 && size.is_finite() { size } else { fallback }
+    }
+}

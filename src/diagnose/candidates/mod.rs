@@ -1,0 +1,15 @@
+//! What may be at work: every effect at every place, and curves without a name.
+
+pub(crate) mod candidate;
+pub(crate) mod coordinate;
+pub(crate) mod free_curve;
+pub(crate) mod free_surface;
+pub(crate) mod library;
+pub(crate) mod naming;
+pub(crate) mod network_start;
+pub(crate) mod placement;
+pub(crate) mod probes;
+pub(crate) mod products;
+pub(crate) mod screen;
+pub(crate) mod smoothing;
+pub(crate) mod sums;

@@ -1,0 +1,63 @@
+//! What a candidate is called where it stands, and which way its signs point.
+
+use crate::candidates::candidate::{Candidate, Preference, Wire};
+use crate::effect::{Mechanism, Named, Needs, Role};
+use crate::findings::cause::{Alternative, LawPart, Site, Value, Wording};
+use crate::register;
+
+impl Candidate {
+    /// What kind of place it enters.
+    pub fn site(&self) -> Site {
+        match (&self.wire, self.place) {
+            (Wire::Parameter(_), _) => Site::Parameter,
+            (Wire::Drift(_), _) => Site::Drift,
+            (_, Preference::Input) => Site::Input,
+            (_, Preference::Output) => Site::Output,
+            _ => Site::Channel,
+        }
+    }
+
+    /// What sentences about it need; `nominal` is the value of a parameter in the model.
+    pub fn wording(&self, nominal: Option<f64>) -> Wording {
+        let first = self.linear.first().filter(|&&i| self.card.knobs[i].role == Role::Coefficient);
+        Wording {
+            title: self.shape.title(&self.named),
+            senses: self.shape.senses(&self.named),
+            push: self.push,
+            one_sign: self.sign != 0.0,
+            size: self.card.properties.size,
+            first: first.map(|&i| self.card.knobs[i].name.to_string()),
+            site: self.site(),
+            is_constant: self.card.needs == Needs::Nothing && self.card.mechanism == Mechanism::Law,
+            is_friction: self.card.properties.is_friction && !self.named.bare,
+            nominal,
+            units: self.units.clone(),
+            ..Wording::default()
+        }
+    }
+
+    /// It as another explanation, with the share of the removable error that it removes.
+    pub fn alternative(&self, error_removed: f64) -> Alternative {
+        Alternative {
+            effect: self.effect.into(),
+            into: self.into.clone(),
+            of: self.of.clone(),
+            error_removed,
+            probability: None,
+            title: self.shape.title(&self.named),
+            site: self.site(),
+        }
+    }
+
+    /// It as a part of a cause.
+    pub fn as_part(&self, parameters: &[Value]) -> LawPart {
+        let wording = self.wording(None);
+        LawPart { effect: self.effect.into(), parameters: parameters.to_vec(), wording }
+    }
+}
+
+/// What a registered effect calls itself; its name where there is none.
+pub(crate) fn title_of(effect: &str) -> String {
+    let own = register::effects().into_iter().find(|(card, _)| card.name == effect);
+    own.map_or_else(|| effect.replace('_', " "), |(_, shape)| shape.title(&Named::default()))
+}

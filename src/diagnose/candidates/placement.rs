@@ -1,0 +1,268 @@
+//! Where each effect may sit in a model: parameters, paths, channels, beside.
+
+use crate::candidates::candidate::{Candidate, Preference, Wire};
+use crate::candidates::library::{Allowed, Builder, Spot};
+use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Needs};
+use crate::fit::problem::Model;
+use crate::system::{AlsoInto, Origin};
+
+impl Builder<'_, '_> {
+    pub(crate) fn parameters(
+        &mut self,
+        name: &'static str,
+        shape: &dyn CandidateEffect,
+        card: &EffectCard,
+        model: &Model,
+        allowed: &Allowed,
+    ) {
+        let signals = &self.problem.base.signals;
+        let duration = self.problem.len() as f64 * self.problem.base.sampling_time;
+        for (p, parameter) in signals.parameters.iter().enumerate() {
+            if parameter.fixed || allowed.fixed.contains(&parameter.name) {
+                continue;
+            }
+            let value = model.theta[p];
+            let mut card = card.clone();
+            card.knobs[0].value = 0.0;
+            let changes = card.mechanism == Mechanism::Parameter;
+            // a change of the value, kept inside the parameter's own bounds and of its sign
+            let floor = if value > 0.0 { parameter.min.max(0.05 * value) } else { parameter.min };
+            let ceiling = if value < 0.0 { parameter.max.min(0.05 * value) } else { parameter.max };
+            let scale = if value == 0.0 { 1.0 } else { value.abs() };
+            let free = (f64::NEG_INFINITY, f64::INFINITY);
+            let range = if changes { (floor - value, ceiling - value) } else { free };
+            self.found.push(Candidate {
+                effect: name,
+                shape: shape.boxed(),
+                wire: if changes { Wire::Parameter(p) } else { Wire::Drift(p) },
+                into: parameter.name.clone(),
+                of: (!changes).then(|| "time".into()),
+                also_into: vec![],
+                also_of: vec![],
+                preference: if changes {
+                    Preference::Parameter
+                } else {
+                    Preference::DeclaredChannel
+                },
+                place: Preference::Parameter,
+                linear: vec![0],
+                refine: vec![],
+                starts: vec![vec![0.0]],
+                min: vec![range.0],
+                max: vec![range.1],
+                thresholds: false,
+                sign: 0.0,
+                probe: if changes { 0.01 * scale } else { 0.02 * scale / duration },
+                stiffness: 0.0,
+                push: 0.0,
+                named: Named::default(),
+                units: (parameter.unit.clone(), "s".into()),
+                twins: vec![],
+                card,
+            });
+        }
+    }
+
+    /// Into inputs and outputs, on their own path, or of nothing, or of time.
+    pub(crate) fn paths(
+        &mut self,
+        name: &'static str,
+        shape: &dyn CandidateEffect,
+        card: &EffectCard,
+    ) {
+        let base = self.problem.base.clone();
+        for (target, (_, origin)) in base.targets.entries.iter().enumerate() {
+            let wanted = match origin {
+                Origin::Input(_) => card.places.input,
+                Origin::Output(_) => card.places.output,
+                _ => false,
+            };
+            if !wanted {
+                continue;
+            }
+            let source = base.sources.at(*origin);
+            let spot = match card.needs {
+                Needs::Nothing => Spot { target, source: None, own_path: false },
+                Needs::Time | Needs::AngleOrTime => {
+                    Spot { target, source: Some(self.time()), own_path: false }
+                }
+                _ => Spot { target, source, own_path: true },
+            };
+            self.push(name, shape, card, spot, 0.0, None, vec![]);
+        }
+    }
+
+    /// Into one group of channels that push the same way.
+    pub(crate) fn channel_paths(
+        &mut self,
+        name: &'static str,
+        shape: &dyn CandidateEffect,
+        card: &EffectCard,
+        group: &[(usize, f64)],
+        sources: &[usize],
+    ) {
+        let base = self.problem.base.clone();
+        let target = group[0].0;
+        let input_of_group = |source: usize| {
+            matches!(base.sources.entries[source].1, Origin::Input(_))
+                && group
+                    .iter()
+                    .any(|&(t, _)| base.targets.entries[t].1 == base.sources.entries[source].1)
+        };
+        // an input that only has its own path is no channel for the rest
+        let twins = |of: Option<usize>| {
+            let of = of.map(|s| base.sources.entries[s].0.name.clone());
+            group[1..]
+                .iter()
+                .map(|&(t, factor)| (base.targets.entries[t].0.name.clone(), of.clone(), factor))
+                .collect::<Vec<_>>()
+        };
+        let is_input = matches!(base.targets.entries[target].1, Origin::Input(_));
+        match card.needs {
+            Needs::Nothing => {
+                // the path of an input has its own offset already
+                if !is_input {
+                    let spot = Spot { target, source: None, own_path: false };
+                    self.push(name, shape, card, spot, 0.0, None, twins(None));
+                }
+                return;
+            }
+            Needs::AngleOrTime if !is_input => {
+                let time = self.time();
+                let spot = Spot { target, source: Some(time), own_path: false };
+                self.push(name, shape, card, spot, 0.0, None, twins(Some(time)));
+            }
+            Needs::Time => return,
+            _ => {}
+        }
+        for &source in sources {
+            if input_of_group(source) {
+                continue; // the same as a curve in the input's own path
+            }
+            let spot = Spot { target, source: Some(source), own_path: false };
+            let signal = &base.sources.entries[source].0;
+            let sign_of = |entry: usize| self.nominal.push(self.problem, target, entry);
+            let (push, rate) = match card.needs {
+                Needs::Velocity => {
+                    let velocity = match &signal.quantity {
+                        Some(quantity) => quantity.is_velocity(),
+                        None => true,
+                    };
+                    let known_position = base.rates.rate(source).is_some();
+                    let series = self.nominal.series(source);
+                    let both = series.iter().any(|v| *v < 0.0) && series.iter().any(|v| *v > 0.0);
+                    let Some(d) = sign_of(source) else { continue };
+                    if !velocity
+                        || !both
+                        || d == 0.0
+                        || known_position
+                            && signal.quantity.is_none()
+                            && !base.rates.is_rate(source)
+                    {
+                        continue;
+                    }
+                    (d, None)
+                }
+                Needs::CoordinateWithRate => {
+                    let Some(rate) = base.rates.rate(source) else { continue };
+                    let Some(d) = sign_of(rate.0).filter(|d| *d != 0.0) else { continue };
+                    (d * rate.1, Some(rate))
+                }
+                Needs::Motion => {
+                    let is_velocity = match &signal.quantity {
+                        Some(quantity) => quantity.is_velocity(),
+                        None => base.rates.is_rate(source),
+                    };
+                    // a velocity whose position is offered too is the same motion
+                    let position = sources.iter().any(|&other| {
+                        base.rates.rate(other).is_some_and(|(r, _)| base.rates.same(r, source))
+                    });
+                    let rate =
+                        if is_velocity { Some((source, 1.0)) } else { base.rates.rate(source) };
+                    let Some(rate) = rate.filter(|_| !(is_velocity && position)) else { continue };
+                    let Some(d) = sign_of(rate.0).filter(|d| *d != 0.0) else { continue };
+                    (d * rate.1, Some(rate))
+                }
+                Needs::AngleOrTime => {
+                    let angle = signal.unit == "rad"
+                        && signal
+                            .quantity
+                            .as_ref()
+                            .is_none_or(|q| matches!(q.0.as_str(), "angle" | "position"));
+                    if !angle {
+                        continue;
+                    }
+                    (0.0, None)
+                }
+                _ => (0.0, None),
+            };
+            let first = self.found.len();
+            self.push(name, shape, card, spot, push, rate, twins(Some(source)));
+            // a law of either sign that has words for both needs to know which is which
+            let named = Named { quantity: self.quantity(source), ..Named::default() };
+            if push == 0.0 && shape.senses(&named).is_some() {
+                let push = sign_of(source).unwrap_or(0.0);
+                self.found[first..].iter_mut().for_each(|cause| cause.push = push);
+            }
+            self.passed_on(name, shape, card, target, source);
+        }
+    }
+
+    /// What leaves one store and enters another: the same law with the other sign into a
+    /// second channel of the same unit. `source` must be the level of the first store alone.
+    fn passed_on(
+        &mut self,
+        name: &'static str,
+        shape: &dyn CandidateEffect,
+        card: &EffectCard,
+        target: usize,
+        source: usize,
+    ) {
+        let base = self.problem.base.clone();
+        let own = |t: usize| matches!(base.targets.entries[t].1, Origin::Own(_));
+        let moves = base.rates.rate(source).is_some() || base.rates.is_rate(source);
+        let stores = base.declared_channels && own(target) && !moves;
+        if !stores || card.needs != Needs::Coordinate || card.states > 0 {
+            return;
+        }
+        let fills = |t: usize| self.nominal.push(self.problem, t, source).is_some_and(|d| d != 0.0);
+        if !fills(target) {
+            return;
+        }
+        let unit = &base.targets.entries[target].0.unit;
+        let others: Vec<usize> = (0..base.targets.entries.len())
+            .filter(|&t| t != target && own(t) && base.targets.entries[t].0.unit == *unit)
+            .filter(|&t| !fills(t))
+            .collect();
+        for other in others {
+            let from = self.found.len();
+            let spot = Spot { target, source: Some(source), own_path: false };
+            self.push(name, shape, card, spot, 0.0, None, vec![]);
+            let into = base.targets.entries[other].0.name.clone();
+            for candidate in &mut self.found[from..] {
+                candidate.also_into = vec![AlsoInto::Opposite(into.clone())];
+            }
+        }
+    }
+
+    /// Beside the model: into an output, of an input.
+    pub(crate) fn beside(
+        &mut self,
+        name: &'static str,
+        shape: &dyn CandidateEffect,
+        card: &EffectCard,
+    ) {
+        let base = self.problem.base.clone();
+        for (target, (_, origin)) in base.targets.entries.iter().enumerate() {
+            if !matches!(origin, Origin::Output(_)) {
+                continue;
+            }
+            for (source, (_, origin)) in base.sources.entries.iter().enumerate() {
+                if matches!(origin, Origin::Input(_)) {
+                    let spot = Spot { target, source: Some(source), own_path: false };
+                    self.push(name, shape, card, spot, 0.0, None, vec![]);
+                }
+            }
+        }
+    }
+}

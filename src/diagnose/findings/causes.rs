@@ -1,0 +1,269 @@
+//! Causes as plain data: numbers, shares, what each record says of them.
+
+use std::sync::Arc;
+
+use crate::candidates::candidate::{Candidate, Wire};
+use crate::candidates::naming::title_of;
+use crate::candidates::sums::by_size;
+use crate::error::DiagnoseError;
+use crate::findings::cause::{Alternative, Cause, ColumnFault, LawPart, Site, Value, Wording};
+use crate::findings::context::Teller;
+use crate::fit::finished::Finished;
+use crate::fit::found::SET;
+use crate::fit::problem::{Added, Grain};
+use crate::fit::profile_likelihood;
+use crate::validate::false_discovery::{either, on_test};
+use crate::validate::noise_floor::Floor;
+use crate::validate::test_error::{Scored, TestData, removed};
+
+/// Spikes below this number and this share are chance.
+const SPIKES: usize = 3;
+const SPIKE_SHARE: f64 = 5e-4;
+/// Candidates that are supposed where their number was not kept.
+const MANY: usize = 1000;
+
+/// What causes are scored by.
+pub(crate) struct Scores<'a> {
+    pub test: &'a TestData,
+    pub before: &'a Scored,
+    pub after: &'a Scored,
+    pub floors: &'a [Option<Floor>],
+    /// Rows of the first samples of joined records.
+    pub firsts: &'a [usize],
+    /// Whether the joined records are records, of which each may show a cause or not.
+    pub several: bool,
+}
+
+impl Teller<'_, '_> {
+    /// The causes that were added to the model, then the parameters that moved.
+    pub fn causes(&self, chosen: &Finished, by: &Scores<'_>) -> Result<Vec<Cause>, DiagnoseError> {
+        let places = chosen.fitted.model.places().into_iter();
+        let at_place = |own| self.at_place(chosen, own, by);
+        let mut causes = places.map(at_place).collect::<Result<Vec<_>, _>>()?;
+        causes.extend(self.moved(chosen, by)?);
+        Ok(causes)
+    }
+
+    /// The laws of one place as one cause.
+    fn at_place(
+        &self,
+        chosen: &Finished,
+        own: Vec<usize>,
+        by: &Scores<'_>,
+    ) -> Result<Cause, DiagnoseError> {
+        let model = &chosen.fitted.model;
+        let only = model.added.len() == own.len() && chosen.moved.is_empty();
+        let bare = (by.several || !only)
+            .then(|| self.refitted(chosen, &model.without_all(&own)))
+            .flatten();
+        let without = match bare.as_ref().filter(|_| !only) {
+            Some(bare) => Some(by.test.score(&self.extend(bare)?)?),
+            None => None,
+        };
+        let without = without.as_ref().unwrap_or(by.before);
+        let share = removed(by.before, without, by.after, by.floors);
+        let candidates = chosen.found.first.as_ref().map_or(MANY, |screen| screen.columns);
+        // all of them together do no less than one of them
+        let score = own.iter().map(|&i| chosen.found.slots[i].score).fold(0.0, f64::max);
+        let p_value = Some(either(on_test(without, by.after), score, candidates));
+        let own = by_size(self.problem, self.nominal, model, own);
+        let mut parts: Vec<LawPart> = own.iter().map(|&i| self.part(chosen, i)).collect();
+        let (cause, slot) = (&model.added[own[0]].cause, &chosen.found.slots[own[0]]);
+        let values = parts[0].parameters.clone();
+        if cause.is_known_limit() {
+            return Ok(self.clipping(cause, values, share, p_value, by.firsts));
+        }
+        let laws: Vec<_> = own.iter().map(|&i| model.added[i].cause.name()).collect();
+        let (indistinguishable, runners_up) = alternatives(cause, slot, share, laws);
+        let records = bare.filter(|_| by.several).and_then(|bare| self.shown(&bare, &chosen.y));
+        let acts_where = self.acts_where(model, &own);
+        parts[0].wording.is_line_here = acts_where.is_none() && self.is_straight(model, &own);
+        Ok(Cause {
+            effect: cause.effect.into(),
+            into: cause.into.clone(),
+            of: cause.of.clone(),
+            also_into: cause.also_into.iter().map(|a| a.channel().to_string()).collect(),
+            also_of: cause.also_of.clone(),
+            parameters: values,
+            p_value,
+            probability: slot.belief.as_ref().map(|belief| belief.law),
+            place_probability: slot.belief.as_ref().map(|belief| belief.place),
+            error_removed: share,
+            indistinguishable,
+            runners_up,
+            onset: None,
+            acts_where,
+            records,
+            rows: None,
+            wording: parts[0].wording.clone(),
+            parts,
+        })
+    }
+
+    /// One law with its numbers and what sentences need.
+    fn part(&self, chosen: &Finished, index: usize) -> LawPart {
+        let model = &chosen.fitted.model;
+        let Added { cause, knobs } = &model.added[index];
+        // the weights of a learned law stand in the extended model; no number of them says anything
+        let values = match cause.is_learned() {
+            true => vec![],
+            false => self.values(chosen, index),
+        };
+        let nominal = match cause.wire {
+            Wire::Parameter(p) | Wire::Drift(p) => {
+                Some(self.problem.base.signals.parameters[p].value)
+            }
+            _ => None,
+        };
+        let shape = cause.is_drawn().then(|| match cause.is_learned() {
+            true => self.found_law(model, index),
+            false => self.found_curve(cause, knobs),
+        });
+        LawPart { wording: Wording { shape, ..cause.wording(nominal) }, ..cause.as_part(&values) }
+    }
+
+    /// Readings that were cut off by the instrument. The extended model has its limits, as a
+    /// saturation of the output, which is the other name for it.
+    fn clipping(
+        &self,
+        limit: &Candidate,
+        values: Vec<Value>,
+        share: f64,
+        p_value: Option<f64>,
+        firsts: &[usize],
+    ) -> Cause {
+        let outputs = &self.problem.base.signals.outputs;
+        let o = outputs.iter().position(|signal| signal.name == limit.into);
+        let at = |y: f64| values.iter().any(|limit| limit.value == y);
+        let rows: Vec<usize> = o.map_or_else(Vec::new, |o| {
+            let stand = (0..self.problem.len()).filter(|&k| at(self.problem.y[o][k]));
+            stand.map(|k| self.joined.row(k, firsts)).collect()
+        });
+        let named = |v: Value| Value { name: "value".into(), ..v };
+        let parameters = values.into_iter().map(named).collect();
+        let other = limit.alternative(share);
+        let fault = of_column("clipping", &limit.into, ColumnFault::Clipping, parameters, rows);
+        Cause { p_value, error_removed: share, indistinguishable: vec![other], ..fault }
+    }
+
+    /// Numbers of a cause: values of a parameter are the new value, not its change.
+    fn values(&self, chosen: &Finished, index: usize) -> Vec<Value> {
+        let added = &chosen.fitted.model.added[index];
+        let cause = &added.cause;
+        let knobs = cause.clipped(&added.knobs, self.problem.step(Grain::Fine));
+        let errors = profile_likelihood::errors(self.problem, chosen, index);
+        let error = |i: usize| errors[i];
+        if let Wire::Parameter(p) = cause.wire {
+            return vec![Value {
+                name: "value".into(),
+                value: chosen.fitted.model.theta[p] + knobs[0],
+                std_error: error(0),
+                unit: cause.units.0.clone(),
+            }];
+        }
+        let knobs = cause.card.knobs.iter().zip(knobs).enumerate();
+        // where the values of a free curve stand is part of what was found
+        let at = crate::candidates::free_curve::knots_of(cause).into_iter().enumerate().map(
+            |(i, knot)| Value {
+                name: format!("knots.{i}"),
+                value: knot,
+                std_error: None,
+                unit: cause.units.1.clone(),
+            },
+        );
+        let values =
+            knobs.filter(|(_, (_, value))| value.is_finite()).map(|(i, (knob, value))| Value {
+                name: knob.name.to_string(),
+                value,
+                std_error: error(i),
+                unit: match cause.wire {
+                    Wire::Drift(_) if cause.units.0.is_empty() => "1/s".into(),
+                    Wire::Drift(_) => format!("{}/s", cause.units.0),
+                    _ => knob.unit.text(&cause.units.0, &cause.units.1),
+                },
+            });
+        values.chain(at).collect()
+    }
+
+    /// Spikes, where there are too many to be chance.
+    pub fn outliers(&self, chosen: &Finished, firsts: &[usize]) -> Vec<Cause> {
+        let mut causes = vec![];
+        for (o, rows) in chosen.found.spikes.iter().enumerate() {
+            let share = rows.len() as f64 / self.problem.len().max(1) as f64;
+            if rows.len() < SPIKES || share <= SPIKE_SHARE {
+                continue;
+            }
+            let into = &self.problem.base.signals.outputs[o].name;
+            let unit = String::new();
+            let value = Value { name: "value".into(), value: share, std_error: None, unit };
+            let rows = rows.iter().map(|&k| self.joined.row(k, firsts)).collect();
+            causes.push(of_column(
+                "outliers",
+                into,
+                ColumnFault::Outliers(share),
+                vec![value],
+                rows,
+            ));
+        }
+        causes
+    }
+}
+
+/// A fault of a column, with the number that goes with it and its rows.
+pub(crate) fn of_column(
+    effect: &str,
+    into: &str,
+    fault: ColumnFault,
+    parameters: Vec<Value>,
+    rows: Vec<usize>,
+) -> Cause {
+    Cause {
+        effect: effect.into(),
+        into: into.into(),
+        parts: vec![LawPart {
+            effect: effect.into(),
+            parameters: parameters.clone(),
+            ..LawPart::default()
+        }],
+        parameters,
+        rows: Some(rows),
+        wording: Wording {
+            title: title_of(effect),
+            site: Site::Column,
+            fault: Some(fault),
+            ..Wording::default()
+        },
+        ..Cause::default()
+    }
+}
+
+/// What cannot be told from a cause that removes this share, and what comes next; `known`: its own laws.
+fn alternatives(
+    cause: &Arc<Candidate>,
+    slot: &crate::fit::found::Slot,
+    share: f64,
+    mut known: Vec<(String, String, Option<String>)>,
+) -> (Vec<Alternative>, Vec<Alternative>) {
+    // what holds of the headline's place holds of its twins', and need not be said again
+    let twins = cause.twins.iter().map(|(into, of, _)| Alternative {
+        into: into.clone(),
+        of: of.clone(),
+        ..cause.alternative(share)
+    });
+    let as_data = |(c, gain): &(Arc<Candidate>, f64)| c.alternative(gain.clamp(0.0, 1.0) * share);
+    let chances = slot.belief.iter().flat_map(|belief| &belief.members).copied().map(Some);
+    let chances = chances.chain(std::iter::repeat(None));
+    let members = slot.set.iter().zip(chances).filter(|((member, _), _)| !member.same_cause(cause));
+    let member = |(own, probability)| Alternative { probability, ..as_data(own) };
+    // other laws before twins: where there are too many, twins are missed least
+    let mut alike: Vec<Alternative> = members.map(member).chain(twins).collect();
+    alike.retain(|a: &Alternative| {
+        let name = (a.effect.clone(), a.into.clone(), a.of.clone());
+        let new = !known.contains(&name);
+        known.push(name);
+        new
+    });
+    let too_many = alike.split_off((SET - 1).min(alike.len()));
+    let next = too_many.into_iter().chain(slot.others.iter().map(as_data)).take(4).collect();
+    (alike, next)
+}

@@ -1,0 +1,280 @@
+//! What a diagnosis found: plain data, built once.
+//!
+//! `report` makes the document `diagnosis.json`, sentences and a page of it.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::evaluate::Metrics;
+use crate::findings::cause::{Alternative, Cause, MissingForce, Withdrawn};
+use crate::findings::closed_loop::ClosedLoop;
+use crate::findings::distortion::Distortion;
+use crate::findings::error_band::Regime;
+use crate::findings::note::Note;
+use crate::fit::hypothesis::{Moved, Track};
+use crate::system::System;
+use crate::validate::noise_floor::NoiseFloor;
+
+/// What came out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Causes stand in the list.
+    CausesFound,
+    /// What is left does not depend on the inputs: it is noise.
+    NothingFound,
+    /// What is left depends on the inputs, and nothing in the library accounts for it.
+    Unexplained,
+    /// Only faults of the data were found.
+    DataFault,
+}
+
+/// How many of the named causes may be false.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FalseDiscovery {
+    /// Rate at which a cause counts as confirmed.
+    pub level: f64,
+    /// Bound on the expected share of false ones among those that are confirmed (Benjamini and
+    /// Yekutieli 2001).
+    pub rate: f64,
+    /// How many are confirmed.
+    pub confirmed: usize,
+    /// Those that are not: effect, into, of.
+    pub not_confirmed: Vec<String>,
+}
+
+/// The track that was not chosen.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct OtherTrack {
+    /// Which one.
+    pub track: Track,
+    /// Its causes.
+    pub causes: Vec<Alternative>,
+    /// Parameters it moved by more than three standard errors.
+    pub parameters_moved: Vec<Moved>,
+}
+
+/// Figures on the estimation data and on the test data, per output.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Scores {
+    /// On the data that were fitted and chosen on.
+    pub data: BTreeMap<String, Metrics>,
+    /// On data used for nothing else.
+    pub test: BTreeMap<String, Metrics>,
+}
+
+/// What one of several records shows on its own, where all of them together name no cause.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Alone {
+    /// The record: its file, or its number.
+    pub record: String,
+    /// Its first cause, and what each record says of the model that is extended by all of its
+    /// causes. Values are those of this record.
+    pub cause: Cause,
+}
+
+/// What was gained on the test data.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Gain {
+    /// RMSE after over RMSE before.
+    pub test_rmse_ratio: f64,
+    /// Share of the mean square above the noise floor that was removed.
+    pub error_removed: f64,
+    /// Its 95 % interval.
+    pub interval95: [f64; 2],
+}
+
+/// Something that was looked for and not found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NotFound {
+    /// Effect.
+    pub effect: String,
+    /// Where it would enter.
+    pub into: String,
+    /// What it would depend on.
+    pub of: Option<String>,
+    /// Smallest first coefficient that would have been seen.
+    pub smallest_visible: Option<f64>,
+    /// Its unit.
+    pub unit: String,
+    /// Share of the effect that parameters and initial states cannot imitate.
+    pub kappa: f64,
+    /// Whether this record would have shown it at a size that is no larger than what drives its
+    /// place anyway.
+    pub visible: bool,
+}
+
+/// One line of the ranking of candidates before any refit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Ranked {
+    /// Effect.
+    pub effect: String,
+    /// Where it enters.
+    pub into: String,
+    /// What it depends on.
+    pub of: Option<String>,
+    /// Share of the residual that it explains to first order.
+    pub share: f64,
+    /// Score.
+    pub score: f64,
+}
+
+/// What the extended model leaves of one output.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Left {
+    /// RMS of the residual over the standard deviation of the noise; `None` where the noise is not
+    /// known.
+    pub ratio_to_noise: Option<f64>,
+    /// Whether it has no memory (Ljung and Box, Biometrika 65, 1978, on 20 lags).
+    pub white: bool,
+    /// Score of that test: about normal where it is white.
+    pub score: f64,
+}
+
+/// How much was recorded.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct RecordFacts {
+    /// Records that were fitted and chosen on.
+    pub records: usize,
+    /// Their samples, all together.
+    pub samples: usize,
+    /// Sampling time in s.
+    pub sampling_time: f64,
+    /// Samples of a test record of its own; `None` where the last part of the records is the test.
+    pub test_samples: Option<usize>,
+}
+
+/// Everything a diagnosis found.
+#[derive(Debug, Clone, Serialize)]
+pub struct Finding {
+    /// What came out.
+    pub verdict: Verdict,
+    /// Probability of the verdict; `None` where hypotheses were not compared by it.
+    pub verdict_probability: Option<f64>,
+    /// Causes in order of discovery.
+    pub causes: Vec<Cause>,
+    /// Causes that the test record refutes.
+    pub withdrawn: Vec<Withdrawn>,
+    /// Which track was chosen.
+    pub track: Track,
+    /// The other one, if it was searched.
+    pub other_track: Option<OtherTrack>,
+    /// Parameters that were supposed right: held by the model or by the call.
+    pub held: Vec<String>,
+    /// How much was recorded.
+    pub record: RecordFacts,
+    /// Noise per output.
+    pub noise_floor: BTreeMap<String, NoiseFloor>,
+    /// Figures of the baseline.
+    pub before: Scores,
+    /// Figures of the extended model.
+    pub after: Scores,
+    /// How many of the causes in the machine may be false; absent where none is named.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub false_discovery: Option<FalseDiscovery>,
+    /// What was gained.
+    pub gain: Gain,
+    /// What is left, per output.
+    pub left: BTreeMap<String, Left>,
+    /// Score that what is left still depends on the inputs.
+    pub dependence: f64,
+    /// The missing force at each channel, largest first.
+    pub missing: Vec<MissingForce>,
+    /// Ranking of the first screen.
+    pub ranking: Vec<Ranked>,
+    /// What was looked for and not found.
+    pub not_found: Vec<NotFound>,
+    /// Odd and even distortion and noise per output, where periods of the input leave lines empty.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub distortion: BTreeMap<String, Distortion>,
+    /// Frequencies that the model's error keeps to, per output, where it keeps to a part of them.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub regime: BTreeMap<String, Regime>,
+    /// What single ones of several records show, where all together name no cause.
+    #[serde(skip)]
+    pub alone: Vec<Alone>,
+    /// The input that reacts to the outputs, if one does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub closed_loop: Option<ClosedLoop>,
+    /// What else is worth knowing.
+    #[serde(skip)]
+    pub notes: Vec<Note>,
+    /// Whether somebody stopped the search.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub interrupted: bool,
+    /// Wall-clock time in s.
+    pub seconds: f64,
+    /// The extended model.
+    #[serde(skip)]
+    pub extended: System,
+    /// Series for the report.
+    #[serde(skip)]
+    pub series: Series,
+}
+
+impl Finding {
+    /// Unit of an output, empty where it has none.
+    pub fn unit(&self, output: &str) -> &str {
+        let of = self.series.outputs.iter().find(|(name, _)| name == output);
+        of.map_or("", |(_, unit)| unit)
+    }
+
+    /// Causes in the machine, faults of the data apart.
+    pub fn in_the_machine(&self) -> impl Iterator<Item = &Cause> {
+        self.causes.iter().filter(|cause| !cause.is_data_fault())
+    }
+}
+
+/// The causes by name; sentences are made by `report`.
+impl std::fmt::Display for Finding {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let names: Vec<String> = self.causes.iter().map(Cause::name).collect();
+        match &names[..] {
+            [] => write!(f, "{:?}", self.verdict),
+            names => f.write_str(&names.join("; ")),
+        }
+    }
+}
+
+/// Series that the report draws.
+#[derive(Debug, Clone, Default)]
+pub struct Series {
+    /// Sampling time in s.
+    pub sampling_time: f64,
+    /// Name and unit of every output.
+    pub outputs: Vec<(String, String)>,
+    /// Name and unit of every input, and its values.
+    pub inputs: Vec<(String, String, Vec<f64>)>,
+    /// Measured outputs on the estimation data.
+    pub measured: Vec<Vec<f64>>,
+    /// Simulated by the baseline.
+    pub before: Vec<Vec<f64>>,
+    /// Simulated by the extended model.
+    pub after: Vec<Vec<f64>>,
+    /// Stretches of the estimation data that were simulated without a break.
+    pub segments: Vec<std::ops::Range<usize>>,
+    /// First sample of the part that chose.
+    pub split: usize,
+    /// Flagged samples per output.
+    pub flagged: Vec<Vec<usize>>,
+    /// One picture per cause: the missing quantity against the coordinate.
+    pub curves: Vec<Curve>,
+}
+
+/// The missing quantity against the coordinate that it depends on.
+#[derive(Debug, Clone, Default)]
+pub struct Curve {
+    /// Cause it belongs to; where there is none, the curve that comes nearest to what is left.
+    pub cause: usize,
+    /// Coordinate and unit.
+    pub coordinate: (String, String),
+    /// Channel and unit.
+    pub channel: (String, String),
+    /// Coordinate values of the fitted law, and its values.
+    pub law: Vec<(f64, f64)>,
+    /// Free curve estimated from the data: coordinate, value, standard error.
+    pub knots: Vec<(f64, f64, f64)>,
+    /// Of a law of two coordinates: where the other one is held, in words, and the law there.
+    pub slices: Vec<(String, Vec<(f64, f64)>)>,
+}

@@ -1,0 +1,19 @@
+//! What is reported: causes as plain data, and what records show beside them.
+
+pub(crate) mod active_range;
+pub(crate) mod cause;
+pub(crate) mod causes;
+pub(crate) mod closed_loop;
+pub(crate) mod context;
+pub(crate) mod distortion;
+pub(crate) mod error_band;
+pub(crate) mod finding;
+pub(crate) mod formula;
+pub(crate) mod hand_over;
+pub(crate) mod nearest_shape;
+pub(crate) mod note;
+pub(crate) mod per_record;
+pub(crate) mod pictures;
+pub(crate) mod remarks;
+pub(crate) mod report;
+pub(crate) mod withdrawn;

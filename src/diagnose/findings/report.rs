@@ -1,0 +1,274 @@
+//! Turns what a search ended with into plain data.
+
+use std::collections::BTreeMap;
+
+use crate::candidates::candidate::Wire;
+use crate::data::Record;
+use crate::error::DiagnoseError;
+use crate::evaluate::Metrics;
+use crate::findings::causes::Scores as By;
+use crate::findings::context::{Source, Teller};
+use crate::findings::finding::{Left, OtherTrack, Ranked, Scores, Series, Verdict};
+use crate::findings::hand_over::Searched;
+use crate::findings::remarks::made_up_for;
+use crate::fit::finished::Finished;
+use crate::fit::hypothesis::{Moved, Track};
+use crate::fit::problem::{Grain, Model, Part};
+use crate::fit::refit::{Refit, refit};
+use crate::model::with_parameters;
+use crate::prepare::input_dependence::DEPENDS;
+use crate::statistics::{rms, whiteness};
+use crate::system::System;
+use crate::validate::false_discovery::false_discovery;
+use crate::validate::gain::gain;
+use crate::validate::noise_floor::NoiseFloor;
+use crate::validate::noise_floor::{self, predicted, repeated};
+use crate::validate::test_error::Counted;
+
+/// Share of the removable error that a curve of unknown shape must remove to explain it.
+const EXPLAINED: f64 = 0.8;
+/// Share of the removable error that named causes must account for, within what is known of it.
+const MOST: f64 = 0.5;
+/// Score of the Ljung-Box test below which a residual counts as white.
+const WHITE: f64 = 3.0;
+
+impl Teller<'_, '_> {
+    /// Everything that a search says of the machine and its records.
+    pub fn tell(
+        &self,
+        chosen: &Finished,
+        other: Option<&Finished>,
+        from: &Source<'_>,
+    ) -> Result<Searched, DiagnoseError> {
+        let (system, test) = (self.system, from.test);
+        let extended = self.extend(&chosen.fitted.model)?;
+        let (before, after) = rayon::join(|| test.score(system), || test.score(&extended));
+        let (before, after) = (before?, after?);
+        let y_before = self.problem.simulate(from.start, Grain::Fine);
+        let y_before = y_before.unwrap_or_else(|| chosen.y.clone());
+        let drives: Vec<&[f64]> = self.joined.drive.inputs.iter().map(Vec::as_slice).collect();
+        let off_before = self.off(&y_before);
+        let floors = test.floors(system, &before, &off_before, &drives);
+        // stretches of one record are no records
+        let several = self.joined.spans.len() > 1 && !matches!(test.counted, Counted::All);
+        let by = By {
+            test,
+            before: &before,
+            after: &after,
+            floors: &floors,
+            firsts: from.firsts,
+            several,
+        };
+        let mut causes = self.causes(chosen, &by)?;
+        let false_discovery = false_discovery(&causes);
+        let structural = causes.iter().filter(|cause| !cause.is_data_fault()).count();
+        causes.extend(self.outliers(chosen, from.firsts));
+        let withdrawn = self.withdrawn(chosen, test, &after)?;
+        let gain = gain(&before, &after, &floors);
+        let curves_only = causes.iter().all(|c| c.is_data_fault() || c.wording.shape.is_some());
+        let verdict = match (structural, causes.len()) {
+            (1.., _) if curves_only && gain.error_removed < EXPLAINED => Verdict::Unexplained,
+            (1.., _) if gain.interval95[1] < MOST => Verdict::Unexplained,
+            (0, 0) if chosen.dependence > DEPENDS => Verdict::Unexplained,
+            (0, 0) => Verdict::NothingFound,
+            (0, _) => Verdict::DataFault,
+            _ => Verdict::CausesFound,
+        };
+        let mut notes = self.of_the_record(&y_before);
+        notes.extend(self.notes(chosen, &causes));
+        notes.extend(made_up_for(chosen.track, &causes, gain.error_removed));
+        let unknown = verdict == Verdict::Unexplained && causes.is_empty();
+        let nearest = unknown.then(|| self.suspicion(chosen)).flatten();
+        let (curve, note) = nearest.unzip();
+        notes.extend(note);
+        let noise_floor = self.noise_floor(&off_before, &drives, from.used);
+        let regime = match verdict {
+            Verdict::CausesFound | Verdict::Unexplained => {
+                self.regimes(structural > 0, &noise_floor, &y_before, chosen)
+            }
+            _ => BTreeMap::new(),
+        };
+        Ok(Searched {
+            verdict,
+            track: chosen.track,
+            other_track: Some(self.other(chosen, other)),
+            before: Scores { data: self.data_metrics(&y_before), test: before.metrics },
+            after: Scores { data: self.data_metrics(&chosen.y), test: after.metrics },
+            false_discovery,
+            gain,
+            left: self.left(chosen, &noise_floor),
+            dependence: chosen.dependence,
+            noise_floor,
+            ranking: self.ranking(chosen),
+            not_found: self.not_found(chosen),
+            regime,
+            closed_loop: self.feedback(chosen, from.used),
+            notes,
+            held: self.held(from.fixed),
+            causes,
+            series: self.series(chosen, &y_before, curve),
+            extended,
+            verdict_probability: match verdict {
+                Verdict::NothingFound => Some(chosen.found.nothing),
+                Verdict::CausesFound => Some(1.0 - chosen.found.nothing),
+                _ => None,
+            },
+            withdrawn,
+            missing: vec![],
+        })
+    }
+
+    /// Figures of every output on the data that were fitted and chosen on.
+    fn data_metrics(&self, y: &[Vec<f64>]) -> BTreeMap<String, Metrics> {
+        let outputs = self.problem.base.signals.outputs.iter().enumerate();
+        let metrics = outputs.filter_map(|(o, s)| {
+            let measured = self.problem.counted(o, &self.joined.measured[o], Part::All);
+            let simulated = self.problem.counted(o, &y[o], Part::All);
+            Metrics::of(&measured, &simulated).map(|m| (s.name.clone(), m))
+        });
+        metrics.collect()
+    }
+
+    /// What the extended model leaves of every output.
+    fn left(
+        &self,
+        chosen: &Finished,
+        floors: &BTreeMap<String, NoiseFloor>,
+    ) -> BTreeMap<String, Left> {
+        let off = self.off(&chosen.y);
+        let outputs = self.problem.base.signals.outputs.iter().enumerate();
+        let left = outputs.map(|(o, signal)| {
+            let off = self.problem.counted(o, &off[o], Part::All);
+            let score = whiteness(&off);
+            let noise = floors.get(&signal.name).map(|floor| floor.std).filter(|std| *std > 0.0);
+            let ratio_to_noise = noise.map(|std| rms(&off) / std);
+            (signal.name.clone(), Left { ratio_to_noise, white: score < WHITE, score })
+        });
+        left.collect()
+    }
+
+    /// Parameters that are supposed right.
+    fn held(&self, fixed: &[String]) -> Vec<String> {
+        let parameters = self.problem.base.signals.parameters.iter();
+        let held = parameters.filter(|p| p.fixed || fixed.contains(&p.name));
+        held.map(|p| p.name.clone()).collect()
+    }
+
+    /// The system with a model's parameters and causes.
+    pub fn extend(&self, model: &Model) -> Result<System, DiagnoseError> {
+        let system = self.system;
+        let signals = &self.problem.base.signals;
+        let mut theta = model.theta.clone();
+        let mut extended = system.clone();
+        let step = self.problem.step(Grain::Fine);
+        for added in &model.added {
+            let knobs = added.cause.clipped(&added.knobs, step);
+            match added.cause.wire {
+                Wire::Parameter(p) => theta[p] += knobs[0],
+                _ => extended.effects.extend(added.cause.placed(&knobs)),
+            }
+        }
+        let changes: Vec<(String, f64)> = signals
+            .parameters
+            .iter()
+            .zip(&theta)
+            .filter(|(p, value)| p.value != **value)
+            .map(|(p, value)| (p.name.clone(), *value))
+            .collect();
+        if !changes.is_empty() {
+            extended.model = with_parameters(system.model.as_ref(), &changes)
+                .map_err(|error| DiagnoseError::Extend { reason: error.to_string() })?;
+        }
+        if extended.sampling.sampling_time.is_none() {
+            extended.sampling.sampling_time = Some(self.joined.sampling_time);
+        }
+        Ok(extended)
+    }
+
+    /// The same model without one of its causes (or parameter changes), refitted.
+    pub fn refitted(&self, chosen: &Finished, model: &Model) -> Option<Model> {
+        let models = std::slice::from_ref(model);
+        let mut nuisance = chosen.nuisance.clone();
+        nuisance.free.retain(|&(p, _)| !self.is_held(p));
+        refit(self.problem, &nuisance, models, Refit::last()).swap_remove(0).map(|f| f.model)
+    }
+
+    fn is_held(&self, p: usize) -> bool {
+        self.problem.base.signals.parameters[p].fixed
+    }
+
+    fn other(&self, chosen: &Finished, other: Option<&Finished>) -> OtherTrack {
+        let track = match chosen.track {
+            Track::ParametersTrusted => Track::ParametersFree,
+            Track::ParametersFree => Track::ParametersTrusted,
+        };
+        OtherTrack {
+            track,
+            causes: other.map_or_else(Vec::new, |other| {
+                let added = other.fitted.model.added.iter().zip(&other.found.slots);
+                added.map(|(a, _)| a.cause.alternative(1.0)).collect()
+            }),
+            parameters_moved: other.map_or_else(Vec::<Moved>::new, |other| other.moved.clone()),
+        }
+    }
+
+    /// What a simulation leaves of every output.
+    fn off(&self, y: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let outputs = self.joined.measured.iter().zip(y);
+        outputs.map(|(measured, y)| measured.iter().zip(y).map(|(a, b)| a - b).collect()).collect()
+    }
+
+    fn noise_floor(
+        &self,
+        off: &[Vec<f64>],
+        drives: &[&[f64]],
+        used: &[Record],
+    ) -> BTreeMap<String, NoiseFloor> {
+        let outputs = self.problem.base.signals.outputs.iter().enumerate();
+        outputs
+            .filter_map(|(o, signal)| {
+                let periods = used.first().filter(|_| used.len() == 1).and_then(Record::periods);
+                let from_periods = periods
+                    .and_then(|p| repeated(&self.joined.measured[o], p.samples, p.samples / 10));
+                let floor =
+                    from_periods.or_else(|| predicted(noise_floor::Left { r: &off[o], drives }))?;
+                let entry = NoiseFloor { std: floor.std, method: floor.method.into() };
+                Some((signal.name.clone(), entry))
+            })
+            .collect()
+    }
+
+    fn ranking(&self, chosen: &Finished) -> Vec<Ranked> {
+        let Some(screen) = &chosen.found.first else { return vec![] };
+        let ranked = screen.scored.iter().take(40).map(|s| Ranked {
+            effect: s.cause.effect.into(),
+            into: s.cause.into.clone(),
+            of: s.cause.of.clone(),
+            share: s.explained / screen.total.max(1e-300),
+            score: s.score,
+        });
+        ranked.collect()
+    }
+
+    fn series(
+        &self,
+        chosen: &Finished,
+        before: &[Vec<f64>],
+        nearest: Option<crate::findings::finding::Curve>,
+    ) -> Series {
+        let signals = &self.problem.base.signals;
+        let inputs = signals.inputs.iter().zip(&self.joined.drive.inputs);
+        Series {
+            sampling_time: self.joined.sampling_time,
+            outputs: signals.outputs.iter().map(|s| (s.name.clone(), s.unit.clone())).collect(),
+            inputs: inputs.map(|(s, u)| (s.name.clone(), s.unit.clone(), u.clone())).collect(),
+            measured: self.joined.measured.clone(),
+            before: before.to_vec(),
+            after: chosen.y.to_vec(),
+            segments: self.joined.drive.segments.clone(),
+            split: self.problem.samples(Part::Choose).next().unwrap_or(self.problem.len()),
+            flagged: chosen.found.spikes.clone(),
+            curves: self.pictures(chosen).into_iter().chain(nearest).collect(),
+        }
+    }
+}

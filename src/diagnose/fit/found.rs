@@ -1,0 +1,58 @@
+//! What a search begins with and what it ends with.
+
+use std::sync::Arc;
+
+use crate::candidates::candidate::Candidate;
+use crate::candidates::screen::Screen;
+use crate::fit::problem::{Added, Model};
+
+/// Members of a named set at most.
+pub(crate) const SET: usize = 4;
+
+/// One named cause with everything that cannot be told from it.
+#[derive(Debug, Clone)]
+pub(crate) struct Slot {
+    /// Members of the set with their share of what the best removes, the headline first.
+    pub set: Vec<(Arc<Candidate>, f64)>,
+    /// Others that were refitted, with the share of the best's gain that they reach.
+    pub others: Vec<(Arc<Candidate>, f64)>,
+    /// Score of the model with it against that without it, on the part that chooses; 0 where the
+    /// two were not compared.
+    pub score: f64,
+    /// How probable it is, where that was worked out.
+    pub belief: Option<Belief>,
+}
+
+/// Probabilities of one cause.
+#[derive(Debug, Clone)]
+pub(crate) struct Belief {
+    /// That this law is at work at this place.
+    pub law: f64,
+    /// That any law is.
+    pub place: f64,
+    /// That each member of the set is, the headline first.
+    pub members: Vec<f64>,
+}
+
+impl Slot {
+    /// A cause that was compared with no other.
+    pub fn of(cause: &Arc<Candidate>) -> Self {
+        Self { set: vec![(cause.clone(), 1.0)], others: vec![], score: 0.0, belief: None }
+    }
+}
+
+/// What a search ended with.
+pub(crate) struct Found {
+    pub model: Model,
+    pub slots: Vec<Slot>,
+    /// The ranking of candidates about the model without causes.
+    pub first: Option<Screen>,
+    /// Samples flagged as spikes, per output.
+    pub spikes: Vec<Vec<usize>>,
+    /// Whether the most causes allowed were reached.
+    pub full: bool,
+    /// Probability that nothing is wrong.
+    pub nothing: f64,
+    /// Causes that were taken back: samples that were not fitted are more probable without them.
+    pub withdrawn: Vec<Added>,
+}

@@ -1,0 +1,97 @@
+//! Parameters that a fit moved beyond their standard errors, as causes.
+
+use crate::candidates::naming::title_of;
+use crate::effect::Mechanism;
+use crate::error::DiagnoseError;
+use crate::findings::cause::{Cause, LawPart, Site, Value, Wording};
+use crate::findings::causes::Scores;
+use crate::findings::context::Teller;
+use crate::fit::finished::Finished;
+use crate::fit::problem::Model;
+use crate::fit::refit::{Refit, refit};
+use crate::register;
+use crate::validate::false_discovery::{either, on_test};
+use crate::validate::test_error::removed;
+
+/// The registered effect that is another value of a parameter.
+fn parameter_effect() -> &'static str {
+    let own = register::effects().into_iter();
+    let own = own.map(|(card, effect)| (card.name, effect.card().mechanism));
+    own.into_iter().find(|(_, by)| *by == Mechanism::Parameter).map_or("", |(name, _)| name)
+}
+
+impl Teller<'_, '_> {
+    /// Parameters that the chosen track moved, as causes.
+    pub(crate) fn moved(
+        &self,
+        chosen: &Finished,
+        by: &Scores<'_>,
+    ) -> Result<Vec<Cause>, DiagnoseError> {
+        let mut causes = vec![];
+        for moved in &chosen.moved {
+            let parameters = &self.problem.base.signals.parameters;
+            let Some(p) = parameters.iter().position(|q| q.name == moved.name) else { continue };
+            let back = self.back(chosen, p, moved.from);
+            let (share, by_test) = match &back {
+                Some(back) => {
+                    let scored = by.test.score(&self.extend(back)?)?;
+                    let share = removed(by.before, &scored, by.after, by.floors);
+                    (share, on_test(&scored, by.after))
+                }
+                None => (0.0, 1.0),
+            };
+            let records = back.filter(|_| by.several).and_then(|back| self.shown(&back, &chosen.y));
+            let unit = parameters[p].unit.clone();
+            let value = Value {
+                name: "value".into(),
+                value: moved.to,
+                std_error: moved.std_error,
+                unit: unit.clone(),
+            };
+            let effect = parameter_effect();
+            causes.push(Cause {
+                effect: effect.into(),
+                into: moved.name.clone(),
+                of: None,
+                also_into: vec![],
+                also_of: vec![],
+                parts: vec![LawPart {
+                    effect: effect.into(),
+                    parameters: vec![value.clone()],
+                    ..LawPart::default()
+                }],
+                wording: Wording {
+                    title: title_of(effect),
+                    site: Site::Parameter,
+                    nominal: Some(moved.from),
+                    first: Some(value.name.clone()),
+                    units: (unit, String::new()),
+                    ..Wording::default()
+                },
+                parameters: vec![value],
+                p_value: Some(either(by_test, moved.distance(), 2 * chosen.nuisance.free.len())),
+                probability: None,
+                place_probability: None,
+                error_removed: share,
+                indistinguishable: vec![],
+                runners_up: vec![],
+                onset: None,
+                acts_where: None,
+                records,
+                rows: None,
+            });
+        }
+        Ok(causes)
+    }
+
+    /// The chosen model with one parameter where it began, refitted.
+    fn back(&self, chosen: &Finished, p: usize, from: f64) -> Option<Model> {
+        let mut back = chosen.fitted.model.clone();
+        back.theta[p] = from;
+        let mut nuisance = chosen.nuisance.clone();
+        nuisance.free.retain(|&(q, _)| q != p);
+        let models = std::slice::from_ref(&back);
+        let fitted = refit(self.problem, &nuisance, models, Refit::last()).swap_remove(0);
+        fitted.map(|fitted| fitted.model)
+    }
+}

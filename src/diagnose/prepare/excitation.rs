@@ -1,0 +1,80 @@
+//! Whether a record can say anything: inputs that move, enough samples, at least one period.
+//!
+//! A system that is not excited cannot be told from any other (persistence of excitation: Ljung,
+//! System Identification, 2nd ed. 1999, section 13.2). What is noted here forbids nothing.
+
+use crate::findings::context::Teller;
+use crate::findings::note::Note;
+use crate::fit::problem::Part;
+use crate::statistics::{deviation, mean};
+
+/// Samples per unknown number below which a record is short: ten of each is the usual rule for a
+/// regression (Harrell, Regression Modeling Strategies, 2nd ed. 2015, section 4.4).
+const PER_UNKNOWN: usize = 10;
+/// Share of its size below which a series does not move.
+const STILL: f64 = 1e-12;
+
+impl Teller<'_, '_> {
+    /// What has to be known of the record before any finding; `y` is what the model makes of it.
+    pub fn of_the_record(&self, y: &[Vec<f64>]) -> Vec<Note> {
+        let signals = &self.problem.base.signals;
+        let mut notes = vec![];
+        let still: Vec<String> = signals
+            .inputs
+            .iter()
+            .zip(&self.joined.drive.inputs)
+            .filter(|(_, u)| !moves(u))
+            .map(|(signal, _)| signal.name.clone())
+            .collect();
+        if !still.is_empty() {
+            notes.push(Note::NoExcitation {
+                all: still.len() == signals.inputs.len(),
+                inputs: still,
+            });
+        }
+        let samples = self.problem.samples(Part::All).count();
+        let free = signals.parameters.iter().filter(|p| !p.fixed).count();
+        let unknowns = free + signals.states.len();
+        if samples < PER_UNKNOWN * unknowns {
+            notes.push(Note::FewSamples { samples, unknowns });
+        }
+        // a model that never turns back has no period
+        let turns = signals.states.len() > 1;
+        for (o, signal) in signals.outputs.iter().enumerate().filter(|_| turns) {
+            let course = self.problem.counted(o, &y[o], Part::All);
+            let crossings = crossings(&course);
+            if crossings < 2 && moves(&course) {
+                notes.push(Note::LessThanAPeriod { output: signal.name.clone(), crossings });
+            }
+        }
+        notes
+    }
+}
+
+/// Whether a series is not constant.
+fn moves(series: &[f64]) -> bool {
+    let known: Vec<f64> = series.iter().copied().filter(|v| v.is_finite()).collect();
+    deviation(&known) > STILL * mean(&known).abs().max(f64::MIN_POSITIVE)
+}
+
+/// How often a series crosses its mean: twice per period.
+fn crossings(series: &[f64]) -> usize {
+    let middle = mean(series);
+    let above: Vec<bool> = series.iter().map(|v| *v > middle).collect();
+    above.windows(2).filter(|pair| pair[0] != pair[1]).count()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_constant_does_not_move_and_a_period_crosses_twice() {
+        assert!(!moves(&[0.0; 9]) && !moves(&[0.1; 9]) && moves(&[0.0, 1e-9]));
+        let wave = |periods: f64| -> Vec<f64> {
+            (0..1000).map(|k| (periods * std::f64::consts::TAU * k as f64 / 1000.0).sin()).collect()
+        };
+        assert_eq!(crossings(&wave(0.25)), 1);
+        assert!(crossings(&wave(1.0)) >= 1 && crossings(&wave(3.0)) >= 5);
+    }
+}

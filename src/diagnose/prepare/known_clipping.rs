@@ -1,0 +1,129 @@
+//! Limits of the instruments: readings that stand at their largest or smallest value.
+
+use std::sync::Arc;
+
+use crate::candidates::candidate::Candidate;
+use crate::candidates::library::{Allowed, library};
+use crate::data::Record;
+use crate::data_faults::{Fault, FaultKind};
+use crate::fit::problem::{Model, Problem};
+use crate::prepare::operating_range::Nominal;
+
+/// Samples at a limit, at least, to call it one.
+const COUNT: usize = 8;
+/// Samples in a row at a limit that chance does not make.
+const RUN: usize = 4;
+/// How much more often a limit is read than the value next to it: what tells a limit from a
+/// coarse scale.
+const TIMES: usize = 5;
+
+/// The lowest and the highest value that a series cannot leave; infinite where there is none.
+fn limits(y: &[f64], known: &[bool]) -> (f64, f64) {
+    let values: Vec<f64> = y.iter().zip(known).filter(|(_, k)| **k).map(|(y, _)| *y).collect();
+    let negative: Vec<f64> = values.iter().map(|v| -v).collect();
+    (upper(&negative).map_or(f64::NEG_INFINITY, |v| -v), upper(&values).unwrap_or(f64::INFINITY))
+}
+
+fn upper(values: &[f64]) -> Option<f64> {
+    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let next = values.iter().copied().filter(|&v| v < largest).fold(f64::NEG_INFINITY, f64::max);
+    let count = |at: f64| values.iter().filter(|&&v| v == at).count();
+    let mut longest = 0;
+    let mut run = 0;
+    for &v in values {
+        run = if v == largest { run + 1 } else { 0 };
+        longest = longest.max(run);
+    }
+    let often = count(largest);
+    // a series that rests at its largest value most of the time has no limit but a level
+    let rests = 2 * often > values.len();
+    // on a fine scale, no value but a limit is met time and again
+    let fine = count(next) == 1;
+    (often >= COUNT && (fine || longest >= RUN) && often >= TIMES * count(next) && !rests)
+        .then_some(largest)
+}
+
+/// Makes readings that stand at a limit of the instrument missing values, and says which.
+pub(crate) fn cut_off(records: &mut [Record]) -> Vec<Fault> {
+    let (mut faults, mut before) = (vec![], 0);
+    for record in records {
+        let samples = record.len();
+        for signal in &mut record.outputs {
+            let known: Vec<bool> = signal.values.iter().map(|v| v.is_finite()).collect();
+            let (low, high) = limits(&signal.values, &known);
+            for limit in [low, high].into_iter().filter(|limit| limit.is_finite()) {
+                let at = (0..samples).filter(|&k| signal.values[k] == limit);
+                let rows: Vec<usize> = at.collect();
+                rows.iter().for_each(|&k| signal.values[k] = f64::NAN);
+                faults.push(Fault {
+                    kind: FaultKind::Clipping(limit),
+                    into: signal.name.clone(),
+                    unit: signal.unit.clone(),
+                    rows: rows.iter().map(|k| before + k).collect(),
+                    removed: 0.0,
+                    or_in: vec![],
+                });
+            }
+        }
+        before += samples;
+    }
+    faults
+}
+
+/// The limits of an output as a cause that is known before any search; `None` without any.
+fn known_limits(
+    candidates: &[Arc<Candidate>],
+    output: &str,
+    (low, high): (f64, f64),
+) -> Option<(Arc<Candidate>, Vec<f64>)> {
+    if !(low.is_finite() || high.is_finite()) {
+        return None;
+    }
+    let found = candidates.iter().find(|c| {
+        c.card.properties.limits_output && c.into == output && c.of.as_deref() == Some(output)
+    })?;
+    let mut cause = Candidate::clone(found);
+    // read off the record, so there is nothing to refine
+    cause.refine = vec![];
+    cause.starts = vec![vec![low, high]];
+    Some((Arc::new(cause), vec![low, high]))
+}
+
+/// A model with what the instruments cannot show, before anything is searched.
+pub(crate) fn limited(
+    problem: &Problem<'_>,
+    nominal: &Nominal,
+    allowed: &Allowed,
+    most: usize,
+    start: Model,
+) -> Model {
+    let mut model = start;
+    for (o, signal) in problem.base.signals.outputs.iter().enumerate().filter(|_| most > 0) {
+        let at = limits(&problem.y[o], &problem.known[o]);
+        if !(at.0.is_finite() || at.1.is_finite()) {
+            continue;
+        }
+        let candidates = library(problem, nominal, &model, vec![], allowed);
+        if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
+            model = model.with(&cause, knobs);
+        }
+    }
+    model
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn readings_that_stand_at_the_top_are_at_a_limit_and_a_coarse_scale_is_none() {
+        let wave = |k: usize| (k as f64 / 30.0).sin();
+        let clipped: Vec<f64> = (0..1000).map(|k| wave(k).min(0.9)).collect();
+        let known = vec![true; 1000];
+        assert_eq!(limits(&clipped, &known), (f64::NEG_INFINITY, 0.9));
+        let coarse: Vec<f64> = (0..1000).map(|k| (8.0 * wave(k)).round() / 8.0).collect();
+        assert_eq!(limits(&coarse, &known), (f64::NEG_INFINITY, f64::INFINITY));
+        let free: Vec<f64> = (0..1000).map(wave).collect();
+        assert_eq!(limits(&free, &known), (f64::NEG_INFINITY, f64::INFINITY));
+    }
+}

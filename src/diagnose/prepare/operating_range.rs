@@ -1,0 +1,231 @@
+//! The baseline along the record: what every coordinate does, which way channels push.
+
+use std::sync::OnceLock;
+
+use crate::effect::View;
+use crate::fit::problem::{Grain, Model, Part, Problem};
+use crate::model::probe::{Along, Point, slope};
+use crate::model::{Ask, Sizes};
+use crate::prepare::regressors::Features;
+use crate::statistics::{deviation, median, rms};
+use crate::system::{Origin, Track};
+
+/// Samples at which slopes are looked at.
+const POINTS: usize = 9;
+/// Samples without which nothing can be followed.
+pub(crate) const LEAST: usize = 10;
+
+/// The course of a baseline along a record.
+pub(crate) struct Nominal {
+    /// Entries of the source table at every sample.
+    pub seen: Vec<Vec<f64>>,
+    /// Standard deviation of every state.
+    pub state_spread: Vec<f64>,
+    /// How fast the outputs move, in s.
+    pub time_scale: f64,
+    /// Angular frequencies worth trying, rad/s.
+    pub frequencies: Vec<f64>,
+    /// A size of w, per entry of the target table, that changes the derivatives by as much
+    /// as they change anyway.
+    pub natural: Vec<f64>,
+    /// Change of the derivatives (rows) by each own channel and input, at several samples.
+    columns: Vec<Vec<f64>>,
+    /// Points of those samples.
+    points: Vec<Point>,
+    sizes: Sizes,
+    /// Samples looked at.
+    count: usize,
+    sampling_time: f64,
+    /// What residuals are regressed on, once somebody asks.
+    features: OnceLock<Option<Features>>,
+}
+
+impl Nominal {
+    /// Follows a model along the record; `None` if it diverges at once.
+    pub fn new(problem: &Problem<'_>, model: &Model) -> Option<Self> {
+        let job = problem.job(model, Grain::Fine)?;
+        let track: Track = problem.system.run_seen(&job.plan, &problem.drive, &job.lane);
+        let base = &problem.base;
+        let n = base.sizes;
+        let known = track.y[0].iter().take_while(|v| v.is_finite()).count();
+        if known < LEAST {
+            return None;
+        }
+        let entry = |origin| base.sources.at(origin);
+        let series = |origin| entry(origin).map(|e| &track.seen[e][..known]);
+        let states: Vec<&[f64]> = (0..n.x).filter_map(|i| series(Origin::State(i))).collect();
+        let inputs: Vec<&[f64]> = (0..n.u).filter_map(|i| series(Origin::Input(i))).collect();
+        let points: Vec<Point> = (0..POINTS)
+            .map(|p| {
+                let k = (p + 1) * (known - 1) / (POINTS + 1);
+                Point {
+                    theta: model.theta.clone(),
+                    x: states.iter().map(|s| s[k]).collect(),
+                    u: inputs.iter().map(|u| u[k]).collect(),
+                    w: vec![0.0; n.w],
+                    time: k as f64 * base.sampling_time,
+                }
+            })
+            .collect();
+        let law = problem.system.model.as_ref();
+        let unit = crate::model::probe::unit;
+        let mut columns: Vec<Vec<f64>> = vec![];
+        for (_, origin) in &base.targets.entries {
+            let column = |point: &Point| match *origin {
+                Origin::Own(i) if base.declared_channels => {
+                    slope(law, n, Ask::Derivative, point, Along::Channel(&unit(n.w, i)))
+                }
+                Origin::Own(i) => unit(n.x, i),
+                Origin::Input(i) => {
+                    slope(law, n, Ask::Derivative, point, Along::Input(&unit(n.u, i)))
+                }
+                _ => vec![0.0; n.x],
+            };
+            columns.push(points.iter().flat_map(column).collect::<Vec<f64>>());
+        }
+        let dt = base.sampling_time;
+        let moves: Vec<f64> = states.iter().map(|s| rms(&gradient(s, dt)).max(1e-300)).collect();
+        let mut natural = vec![];
+        for (entry, (_, origin)) in base.targets.entries.iter().enumerate() {
+            natural.push(match *origin {
+                Origin::Output(o) => deviation(&problem.counted(o, &problem.y[o], Part::All)),
+                Origin::Input(i) => inputs.get(i).map_or(1.0, |u| rms(u).max(1e-12)),
+                _ => natural_size(&columns[entry], &moves, n.x),
+            });
+        }
+        let y: Vec<Vec<f64>> = track.y.iter().map(|y| y[..known].to_vec()).collect();
+        let first = &y[0];
+        let time_scale = deviation(first) / rms(&gradient(first, dt)).max(1e-300);
+        Some(Self {
+            state_spread: states.iter().map(|s| deviation(s) + 1e-12).collect(),
+            frequencies: frequencies(first, dt),
+            time_scale: if time_scale.is_finite() && time_scale > 0.0 {
+                time_scale
+            } else {
+                10.0 * dt
+            },
+            seen: track.seen,
+            natural,
+            columns,
+            points,
+            sizes: n,
+            count: known,
+            sampling_time: dt,
+            features: OnceLock::new(),
+        })
+    }
+
+    /// What residuals of this record are regressed on; `None` where it is too short.
+    pub fn features(&self, problem: &Problem<'_>) -> Option<&Features> {
+        self.features.get_or_init(|| Features::new(problem, |entry| self.series(entry))).as_ref()
+    }
+
+    /// The factor between the columns of two targets that are parallel everywhere:
+    /// one unit into `b` acts like this many into `a`.
+    pub fn parallel(&self, a: usize, b: usize) -> Option<f64> {
+        let (a, b) = (&self.columns[a], &self.columns[b]);
+        let squares: f64 = a.iter().map(|v| v * v).sum();
+        if squares == 0.0 {
+            return None;
+        }
+        let factor = a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / squares;
+        let largest = b.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let off = a.iter().zip(b).fold(0.0, |m: f64, (a, b)| m.max((b - factor * a).abs()));
+        (factor != 0.0 && off <= 1e-9 * largest).then_some(factor)
+    }
+
+    /// D: the rate at which one unit into target `target` changes source `source`, per s;
+    /// 0 where there is no immediate way, `None` where it changes sign.
+    pub fn push(&self, problem: &Problem<'_>, target: usize, source: usize) -> Option<f64> {
+        let law = problem.system.model.as_ref();
+        let n = self.sizes;
+        let base = &problem.base;
+        let values: Vec<f64> = self
+            .points
+            .iter()
+            .enumerate()
+            .map(|(p, point)| {
+                let column = &self.columns[target][p * n.x..][..n.x];
+                match base.sources.entries[source].1 {
+                    Origin::State(i) => column[i],
+                    Origin::Own(i) if !base.declared_coordinates => column[i],
+                    Origin::Own(i) => {
+                        slope(law, n, Ask::Coordinates, point, Along::State(column))[i]
+                    }
+                    Origin::Output(o) => slope(law, n, Ask::Output, point, Along::State(column))[o],
+                    _ => 0.0,
+                }
+            })
+            .collect();
+        let typical = median(&values);
+        if typical == 0.0 || !typical.is_finite() {
+            return Some(0.0);
+        }
+        values.iter().all(|v| v * typical >= 0.0).then_some(typical)
+    }
+
+    /// Whether an input reaches an output without a state in between.
+    pub fn is_direct(&self, problem: &Problem<'_>, input: usize) -> bool {
+        let law = problem.system.model.as_ref();
+        let along = crate::model::probe::unit(self.sizes.u, input);
+        let mut slopes = self
+            .points
+            .iter()
+            .flat_map(|point| slope(law, self.sizes, Ask::Output, point, Along::Input(&along)));
+        slopes.any(|slope| slope != 0.0)
+    }
+
+    /// What a search for effects of one source needs to know.
+    pub fn view(&self, source: usize, is_time: bool, own_path: bool, lines: &[f64]) -> View {
+        let mut view = View::new(&self.seen[source][..self.count], self.sampling_time);
+        view.time_scale = self.time_scale;
+        view.frequencies.clone_from(&self.frequencies);
+        view.lines = lines.to_vec();
+        view.is_time = is_time;
+        view.own_path = own_path;
+        view
+    }
+
+    /// The known part of a source.
+    pub fn series(&self, source: usize) -> &[f64] {
+        &self.seen[source][..self.count]
+    }
+}
+
+/// The size of w that moves the state it pushes most as hard as it moves anyway.
+fn natural_size(column: &[f64], moves: &[f64], n: usize) -> f64 {
+    let mut best = (0.0, 1.0);
+    for i in 0..n {
+        let here: Vec<f64> = column.iter().skip(i).step_by(n).map(|v| v.abs()).collect();
+        let gain = median(&here);
+        let share = gain / moves[i];
+        if gain > 0.0 && share > best.0 {
+            best = (share, moves[i] / gain);
+        }
+    }
+    best.1
+}
+
+/// Differences over time, per s.
+fn gradient(x: &[f64], dt: f64) -> Vec<f64> {
+    x.windows(2).map(|w| (w[1] - w[0]) / dt).collect()
+}
+
+/// Seven angular frequencies around the band in which a signal has its power.
+fn frequencies(y: &[f64], dt: f64) -> Vec<f64> {
+    let power = crate::statistics::power(y);
+    let n = y.len() as f64;
+    let total: f64 = power.iter().sum();
+    let line = 2.0 * std::f64::consts::PI / (n * dt);
+    let quantile = |share: f64| {
+        let mut sum = 0.0;
+        let at = power.iter().position(|p| {
+            sum += p;
+            sum >= share * total
+        });
+        at.unwrap_or(1).max(1) as f64 * line
+    };
+    let lowest = (0.7 * quantile(0.02)).max(10.0 * line);
+    let highest = (2.0 * quantile(0.98)).min(0.6 * std::f64::consts::PI / dt).max(2.0 * lowest);
+    (0..7).map(|i| lowest * (highest / lowest).powf(f64::from(i) / 6.0)).collect()
+}

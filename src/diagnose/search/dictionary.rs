@@ -1,0 +1,162 @@
+//! The dictionary: what every grid point of every candidate does to the outputs, about a model.
+//!
+//! Tangents (the effect of a gentle probe per unit) of all grid points, secants (the effect of a probe
+//! as large as the residual) of the leading ones. Columns are not whitened: any disturbance is a filter
+//! that is applied to them later.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use crate::candidates::candidate::Candidate;
+use crate::candidates::probes::{Probe, Sharing, limit, steer};
+use crate::fit::problem::{Grain, Model, Part, Problem, Span};
+use crate::fit::step_size::ROUGH;
+use crate::statistics::{deviation, dot, project, rms};
+
+/// Candidates that have secants too, and grid points of each.
+const SECANTS: usize = 24;
+const POINTS: usize = 2;
+/// Size of a gentle probe's effect, as shares of the outputs' spread and of the residual; and of a
+/// secant's, as a share of the residual.
+const GENTLE: (f64, f64) = (0.02, 0.5);
+const LARGE: f64 = 0.7;
+
+/// One grid point of a candidate.
+#[derive(Debug, Clone)]
+pub(super) struct Item {
+    /// Number among the candidates.
+    pub candidate: usize,
+    pub cause: Arc<Candidate>,
+    pub start: usize,
+    /// Sign that its first coefficient must have; 0: either.
+    pub sign: f64,
+    /// Effect of one unit of each coefficient on what is fitted, outputs one after the other.
+    pub columns: Vec<Vec<f64>>,
+    /// Coefficient of the probe.
+    pub probe: f64,
+}
+
+impl Item {
+    /// Candidate and grid point.
+    pub fn place(&self) -> (usize, usize) {
+        (self.candidate, self.start)
+    }
+}
+
+/// Spread of the outputs in units of their scales.
+pub(super) fn spread(problem: &Problem<'_>) -> f64 {
+    let of = |o: usize| {
+        let y = problem.counted(o, &problem.y[o], Part::Fit);
+        (deviation(&y) / problem.scale[o]).powi(2)
+    };
+    ((0..problem.y.len()).map(of).sum::<f64>() / problem.y.len().max(1) as f64).sqrt()
+}
+
+/// What is known about the model that candidates are probed about.
+pub(super) struct About<'a> {
+    pub model: &'a Model,
+    pub residual: &'a [f64],
+    /// What its own numbers can imitate, orthonormal.
+    pub basis: &'a [Vec<f64>],
+}
+
+/// All grid points about a model, or those that are `wanted`.
+pub(super) fn dictionary(
+    problem: &Problem<'_>,
+    about: &About<'_>,
+    candidates: &[Arc<Candidate>],
+    wanted: Option<&BTreeSet<(usize, usize)>>,
+) -> Vec<Item> {
+    let (model, residual) = (about.model, about.residual);
+    let spread = spread(problem);
+    // probes are compared with the same steps without them
+    let rough = problem.job(model, Grain::Rough).and_then(|job| {
+        let y = problem.run(&[job], Span::Fit).swap_remove(0)?;
+        let rough = problem.residual(&y, Part::Fit);
+        let off: Vec<f64> = rough.iter().zip(residual).map(|(a, b)| a - b).collect();
+        (rms(&off) < 2.0 * ROUGH * spread).then_some(rough)
+    });
+    let grain = if rough.is_some() { Grain::Rough } else { Grain::Coarse };
+    let present = rough.unwrap_or_else(|| residual.to_vec());
+    let size = rms(residual);
+    let gentle = (GENTLE.0 * spread).min(GENTLE.1 * size);
+    let mut sharing = Sharing { problem, model, kinds: vec![], grain };
+    let mut probes = vec![];
+    for (candidate, cause) in candidates.iter().enumerate() {
+        for start in 0..cause.starts.len() {
+            if wanted.is_some_and(|wanted| !wanted.contains(&(candidate, start))) {
+                continue;
+            }
+            for which in 0..cause.linear.len().max(1) {
+                let sign = if cause.sign < 0.0 && which == 0 { -1.0 } else { 1.0 };
+                let size = cause.probe * sign;
+                probes.push(Probe { candidate, start, which, size, done: false, failed: false });
+            }
+        }
+    }
+    let hits =
+        steer(problem, &mut sharing, candidates, &mut probes, &present, (1e-6, gentle), true);
+    let mut of_start: BTreeMap<(usize, usize), Vec<(Vec<f64>, f64)>> = BTreeMap::new();
+    for (probe, column) in hits {
+        of_start.entry((probe.candidate, probe.start)).or_default().push((column, probe.size));
+    }
+    let mut items = vec![];
+    for ((candidate, start), found) in of_start {
+        let cause = &candidates[candidate];
+        if found.len() < cause.linear.len() {
+            continue;
+        }
+        let probe = found[0].1;
+        let columns: Vec<Vec<f64>> = found.into_iter().map(|(column, _)| column).collect();
+        let sign = if cause.blended() { 1.0 } else { cause.sign };
+        items.push(Item { candidate, cause: cause.clone(), start, sign, columns, probe });
+    }
+    if size > 2.0 * gentle {
+        let mut probes = secants(about, &items, LARGE * size / gentle);
+        let target = LARGE * size;
+        let hits =
+            steer(problem, &mut sharing, candidates, &mut probes, &present, (0.3, target), false);
+        items.extend(hits.into_iter().map(|(probe, column)| Item {
+            candidate: probe.candidate,
+            cause: candidates[probe.candidate].clone(),
+            start: probe.start,
+            sign: probe.size.signum(),
+            columns: vec![column],
+            probe: probe.size,
+        }));
+    }
+    items.retain(|item| item.columns.iter().flatten().all(|v| v.is_finite()));
+    items
+}
+
+/// Probes that are larger by a factor, of the candidates that explain most to first order.
+fn secants(about: &About<'_>, items: &[Item], factor: f64) -> Vec<Probe> {
+    let mut left = about.residual.to_vec();
+    project(about.basis, &mut left);
+    let mut ranked: BTreeMap<usize, Vec<(f64, &Item)>> = BTreeMap::new();
+    for item in items.iter().filter(|item| item.columns.len() == 1) {
+        let mut own = item.columns[0].clone();
+        project(about.basis, &mut own);
+        let explained = dot(&own, &left).powi(2) / dot(&own, &own).max(1e-300);
+        ranked.entry(item.candidate).or_default().push((explained, item));
+    }
+    let mut order: Vec<Vec<(f64, &Item)>> = ranked.into_values().collect();
+    order.iter_mut().for_each(|own| own.sort_by(|a, b| b.0.total_cmp(&a.0)));
+    order.sort_by(|a, b| b[0].0.total_cmp(&a[0].0));
+    order.truncate(SECANTS);
+    let mut probes = vec![];
+    for (_, item) in order.iter().flat_map(|own| own.iter().take(POINTS)) {
+        let signs: &[f64] = match item.cause.sign {
+            _ if item.cause.blended() => &[1.0],
+            s if s > 0.0 => &[1.0],
+            s if s < 0.0 => &[-1.0],
+            _ => &[1.0, -1.0],
+        };
+        for sign in signs {
+            let size = (item.probe.abs() * factor).min(limit(&item.cause, 0, *sign)) * sign;
+            let (candidate, start) = item.place();
+            probes.push(Probe { candidate, start, which: 0, size, done: false, failed: false });
+        }
+    }
+    probes
+}

@@ -1,0 +1,217 @@
+//! The search from end to end: chains with parameters held and free, laws without a name, the veto.
+
+use std::sync::Arc;
+
+use super::beam::Fit;
+use super::chain::{ROUNDS, chain};
+use super::contribution::tangents;
+use super::fits::Wish;
+use super::laws::{Asked, laws_of_places};
+use super::nameless::{left, nameless};
+use super::study::Study;
+use super::told::{ranking, slots};
+use super::veto::vetoed;
+use crate::candidates::candidate::Wire;
+use crate::candidates::library::Allowed;
+use crate::candidates::screen::Screen;
+use crate::evidence::NoiseModel;
+use crate::fit::found::Found;
+use crate::fit::nuisance::Nuisance;
+use crate::fit::problem::{Grain, Model, Part, Problem};
+use crate::prepare::input_dependence::DEPENDS;
+use crate::prepare::known_clipping::limited;
+use crate::prepare::operating_range::Nominal;
+use crate::statistics::add_to_basis;
+use crate::watch::Watch;
+
+/// Iterations of the model without causes, and of a model with parameters the other way.
+const ITERATIONS: usize = 8;
+/// Distance of the best with free parameters from the best within which these are searched too.
+const NEAR: f64 = 10.0;
+/// Causes beside held parameters from which on wrong parameters are a rival.
+const SEVERAL: usize = 3;
+/// Sets whose parameters are let go or put back: so many within so much of the best.
+const TOGGLED: (usize, f64) = (6, 5.0);
+const POLISHED: f64 = 8.0;
+/// Distance from the best within which fits are compared by the integrator's own steps, and iterations.
+const SETTLED: (f64, usize) = (12.0, 3);
+
+/// What a search ended with: causes, whether parameters are free, and what moves beside causes.
+pub(crate) struct Searched {
+    pub found: Found,
+    pub free: bool,
+    pub nuisance: Nuisance,
+}
+
+/// Searches from a model of the baseline; `None` where it cannot be simulated.
+pub(crate) fn search(
+    problem: &mut Problem<'_>,
+    nominal: &Nominal,
+    allowed: &Allowed,
+    most: usize,
+    start: &Model,
+    watch: &dyn Watch,
+) -> Option<Searched> {
+    watch.tell(0.0, "simulating the baseline");
+    if let Some(y) = problem.simulate(start, Grain::Coarse) {
+        problem.flag_spikes(&y);
+    }
+    let start = limited(problem, nominal, allowed, most, start.clone());
+    problem.recorrect(&start);
+    let y = problem.simulate(&start, Grain::Coarse)?;
+    problem.rescale(&y);
+    let mut study = Study::new(problem, nominal, allowed, most, watch);
+    empty(&mut study, &start, &y);
+    let first = study.beam.best_of(false)?.clone();
+    study.stand_on(&first.model);
+    let mut screen = None;
+    if most > 0 {
+        watch.tell(0.05, "screening candidates");
+        chain(&mut study, false, 0..1);
+        screen = screened(&study, &first);
+        families(&mut study);
+        let before = study.beam.best().map(Fit::key);
+        nameless(&mut study);
+        let named = |fit: &&Fit| !fit.model.added.iter().any(|added| added.cause.is_drawn());
+        let now = study.beam.best().filter(named).map(|fit| (fit.free, fit.key()));
+        if let Some((free, _)) = now.filter(|(_, key)| before.as_ref() != Some(key)) {
+            // what a curve is read as was not searched on from
+            searched(&mut study, free, 1);
+        }
+    }
+    watch.tell(0.95, "checking what was named");
+    study.settle(SETTLED.0, SETTLED.1);
+    told(study, screen)
+}
+
+/// The model without causes, parameters held and free.
+fn empty(study: &mut Study<'_, '_>, start: &Model, y: &Arc<Vec<Vec<f64>>>) {
+    let noise = study.disturbance.white(&study.problem.residual(y, Part::Fit));
+    let wish = [Wish { model: start.clone(), noise }];
+    study.fit_and_keep(false, &wish, ITERATIONS);
+    if !study.free.free.is_empty() {
+        study.fit_and_keep(true, &wish, ITERATIONS);
+    }
+    study.polish(POLISHED);
+}
+
+/// Whether letting all parameters move is more probable than what is known with parameters held.
+fn is_behind(study: &Study<'_, '_>) -> bool {
+    let best = |free: bool| study.beam.best_of(free).map(Fit::posterior);
+    best(true).zip(best(false)).is_some_and(|(free, held)| free > held)
+}
+
+/// The chains with parameters held and free, the more probable family first: where parameters are
+/// wrong, laws that stand in for them would be searched in vain.
+fn families(study: &mut Study<'_, '_>) {
+    if study.free.free.is_empty() {
+        searched(study, false, 1);
+        return;
+    }
+    let parameters_first = is_behind(study);
+    if parameters_first {
+        free_chain(study);
+        let best = |free: bool| study.beam.best_of(free).map(Fit::posterior);
+        let near = best(false).zip(best(true)).is_some_and(|(held, free)| held > free - NEAR);
+        if !near && !study.beam.best().is_some_and(|best| left(study, &best.model) > DEPENDS) {
+            return;
+        }
+        if let Some(model) = study.beam.best_of(false).map(|fit| fit.model.clone()) {
+            study.stand_on(&model);
+        }
+        searched(study, false, 0);
+        toggle(study);
+        return;
+    }
+    searched(study, false, 1);
+    toggle(study);
+    let (Some(held), Some(free)) = (study.beam.best_of(false), study.beam.best_of(true)) else {
+        return;
+    };
+    let near = free.posterior() > held.posterior() - NEAR;
+    let many = held.causes() >= SEVERAL;
+    let model = if near { &free.model } else { &held.model };
+    if many || near || left(study, model) > DEPENDS {
+        free_chain(study);
+    }
+}
+
+fn free_chain(study: &mut Study<'_, '_>) {
+    if study.watch.stopped() {
+        return;
+    }
+    study.watch.tell(0.5, "letting parameters move");
+    if let Some(model) = study.beam.best_of(true).map(|fit| fit.model.clone()) {
+        study.stand_on(&model);
+    }
+    searched(study, true, 0);
+    toggle(study);
+}
+
+/// A chain, and on from what its places are asked to be, until that is nothing better.
+fn searched(study: &mut Study<'_, '_>, free: bool, from: usize) {
+    let (mut asked, mut from) = (Asked::new(), from);
+    loop {
+        chain(study, free, from..ROUNDS);
+        let before = study.beam.best_of(free).map(Fit::key);
+        let any = laws_of_places(study, free, &mut asked);
+        study.polish(POLISHED);
+        if !any || study.beam.best_of(free).map(Fit::key) == before {
+            return;
+        }
+        from = 1;
+    }
+}
+
+/// The leading sets with their parameters the other way.
+fn toggle(study: &mut Study<'_, '_>) {
+    let mut wishes: [Vec<Wish>; 2] = [vec![], vec![]];
+    for fit in study.beam.within(TOGGLED.1) {
+        let mut model = fit.model.clone();
+        match fit.free {
+            false => model.added.retain(|a| !matches!(a.cause.wire, Wire::Parameter(_))),
+            true => model.theta = study.problem.base.signals.theta(),
+        }
+        let other = Fit { model: model.clone(), free: !fit.free, ..fit.clone() };
+        let count = wishes[0].len() + wishes[1].len();
+        if study.beam.get(&other.key()).is_none() && count < TOGGLED.0 {
+            wishes[usize::from(other.free)].push(Wish { model, noise: fit.noise.clone() });
+        }
+    }
+    for (free, wishes) in [(false, &wishes[0]), (true, &wishes[1])] {
+        study.fit_and_keep(free, wishes, ITERATIONS);
+    }
+    study.polish(POLISHED);
+}
+
+/// The ranking of the dictionary against the model without causes.
+fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
+    let nuisance = study.nuisance(first.free);
+    let mut basis = vec![];
+    for (_, column) in tangents(study.problem, nuisance, &first.model, &first.residual) {
+        add_to_basis(&mut basis, column);
+    }
+    (!study.items.is_empty()).then(|| ranking(study.problem, &study.items, &first.residual, &basis))
+}
+
+/// The headline after the veto, with its look-alikes.
+fn told(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched> {
+    let headline = study.beam.headline().cloned()?;
+    let (headline, withdrawn) = vetoed(&mut study, headline);
+    let nothing = study.beam.probability(|fit| !fit.free && fit.causes() == 0);
+    let found = Found {
+        slots: slots(study.problem, &study.beam, &headline),
+        model: headline.model.clone(),
+        first,
+        spikes: study.problem.spikes(),
+        full: headline.causes() >= study.most && study.most > 0,
+        nothing,
+        withdrawn,
+    };
+    let nuisance = study.nuisance(headline.free).clone();
+    Some(Searched { found, free: headline.free, nuisance })
+}
+
+#[cfg(test)]
+#[path = "run_tests.rs"]
+mod tests;

@@ -1,0 +1,71 @@
+//! The search from end to end on a small machine.
+
+use crate::Diagnosis;
+use crate::data::{Random, Record};
+use crate::evaluate::{Init, Simulation};
+use crate::findings::finding::{Finding, Verdict};
+use crate::system::System;
+use lacuna_core::file::{Format, parse};
+
+const MODEL: &str = r#"
+sampling_time = 0.05
+[model.equations]
+inputs = [{ name = "u" }]
+states = [{ name = "x", derivative = "v" }, { name = "v", derivative = "u - k*x - 0.8*v" }]
+outputs = [{ name = "y", value = "x" }]
+parameters = [{ name = "k", value = 4.0, fixed = true }]
+channels = [{ name = "f", into = [{ state = "v", gain = "1" }] }]
+"#;
+
+fn system(effects: &str) -> System {
+    let text = format!("{MODEL}{effects}");
+    parse(&text, "mass.toml", Format::Toml).unwrap_or_else(|e| panic!("{}", e.pretty()))
+}
+
+/// A record of a machine with white noise.
+fn record(machine: &System, noise: f64) -> Record {
+    let mut random = Random::new(11);
+    let mut u = vec![0.0; 1500];
+    for k in 1..u.len() {
+        u[k] = 0.9 * u[k - 1] + random.normal();
+    }
+    let driven = Record::new(0.05).input("u", u).unwrap();
+    let run = Simulation::of(machine, &driven, Init::Samples(0)).unwrap();
+    let y = run.outputs.into_iter().next().unwrap().1;
+    let y: Vec<f64> = y.into_iter().map(|y| y + noise * random.normal()).collect();
+    driven.output("y", y).unwrap()
+}
+
+fn found(record: &Record, threads: usize) -> Finding {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    let system = system("");
+    let only = ["cubic", "drag", "bias"].map(String::from);
+    let diagnosis = Diagnosis::of(&system).only(&only);
+    pool.install(|| diagnosis.run(std::slice::from_ref(record), None, &()).unwrap())
+}
+
+#[test]
+fn a_hidden_law_is_named_with_its_probability_whatever_the_number_of_threads() {
+    let hidden = "[[effects]]\ninto = \"f\"\nof = \"x\"\neffect.cubic = { coefficient = -2.0 }\n";
+    let record = record(&system(hidden), 0.02);
+    let one = found(&record, 1);
+    assert_eq!(one.verdict, Verdict::CausesFound);
+    assert_eq!(one.causes.len(), 1);
+    let cause = &one.causes[0];
+    let place = (&cause.effect[..], &cause.into[..], cause.of.as_deref());
+    assert_eq!(place, ("cubic", "f", Some("x")));
+    assert!(cause.probability.unwrap() > 0.9 && cause.place_probability.unwrap() > 0.9);
+    assert!(one.verdict_probability.unwrap() > 0.99);
+    assert!((cause.parameters[0].value + 2.0).abs() < 0.2, "{:?}", cause.parameters);
+    let three = found(&record, 3);
+    assert_eq!(format!("{:?}", one.causes), format!("{:?}", three.causes));
+    assert_eq!(one.verdict_probability, three.verdict_probability);
+}
+
+#[test]
+fn nothing_is_named_where_nothing_is_hidden() {
+    let finding = found(&record(&system(""), 0.02), 2);
+    assert_eq!(finding.verdict, Verdict::NothingFound);
+    assert!(finding.causes.is_empty() && finding.withdrawn.is_empty());
+    assert!(finding.verdict_probability.unwrap() > 0.5);
+}

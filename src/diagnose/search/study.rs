@@ -1,0 +1,190 @@
+//! What a search knows: data, library, fits.
+
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
+use super::beam::{Beam, Fit, SetKey};
+use super::dictionary::Item;
+use super::fits::{Judge, Wish};
+use super::starts;
+use crate::candidates::candidate::Candidate;
+use crate::candidates::library::{Allowed, library};
+use crate::evidence::{Choices, NoiseModel, Stretches};
+use crate::fit::nuisance::Nuisance;
+use crate::fit::problem::{Grain, Model, Part, Problem, Span};
+use crate::prepare::operating_range::Nominal;
+use crate::statistics::strongest;
+use crate::watch::Watch;
+
+/// Names of the library, and laws of a place, before it is known.
+const NAMES: usize = 100;
+const LAWS: usize = 10;
+/// Lines of the residual that hums are tried at.
+const LINES: usize = 3;
+/// Distance from the best within which fits are judged again when the data are looked at anew.
+const JUDGED_AGAIN: f64 = 40.0;
+
+/// A search under way.
+pub(super) struct Study<'a, 'b> {
+    pub problem: &'a mut Problem<'b>,
+    pub nominal: &'a Nominal,
+    pub allowed: &'a Allowed,
+    /// Causes allowed.
+    pub most: usize,
+    pub watch: &'a dyn Watch,
+    /// Initial states only; with all parameters.
+    pub held: Nuisance,
+    pub free: Nuisance,
+    pub disturbance: Stretches,
+    pub beam: Beam,
+    pub candidates: Vec<Arc<Candidate>>,
+    pub choices: Choices,
+    pub items: Vec<Item>,
+    /// Sets that were fitted from a move, and those that were fitted as neighbours.
+    pub tried: BTreeSet<SetKey>,
+    pub settled: BTreeSet<SetKey>,
+}
+
+impl<'a, 'b> Study<'a, 'b> {
+    pub fn new(
+        problem: &'a mut Problem<'b>,
+        nominal: &'a Nominal,
+        allowed: &'a Allowed,
+        most: usize,
+        watch: &'a dyn Watch,
+    ) -> Self {
+        let held = Nuisance::new(problem, nominal);
+        let free = held.clone().with_parameters(problem, &allowed.fixed);
+        let disturbance = Stretches::new(problem, Part::Fit);
+        Self {
+            problem,
+            nominal,
+            allowed,
+            most,
+            watch,
+            held,
+            free,
+            disturbance,
+            beam: Beam::default(),
+            candidates: vec![],
+            choices: Choices { names: NAMES, laws: LAWS },
+            items: vec![],
+            tried: BTreeSet::new(),
+            settled: BTreeSet::new(),
+        }
+    }
+
+    /// What moves beside causes.
+    pub fn nuisance(&self, free: bool) -> &Nuisance {
+        if free { &self.free } else { &self.held }
+    }
+
+    /// Fits, none of them kept yet.
+    pub fn fit(&self, free: bool, wishes: &[Wish], iterations: usize) -> Vec<Fit> {
+        let (problem, nuisance) = (&*self.problem, self.nuisance(free));
+        let judge = Judge {
+            problem,
+            nuisance,
+            free,
+            disturbance: &self.disturbance,
+            choices: self.choices,
+        };
+        judge.fit(wishes, iterations)
+    }
+
+    /// Fits, and keeps what is better than what is known.
+    pub fn fit_and_keep(&mut self, free: bool, wishes: &[Wish], iterations: usize) {
+        for fit in self.fit(free, wishes, iterations) {
+            self.beam.keep(fit);
+        }
+    }
+
+    /// Fits the leading ones once more, each in its own disturbance.
+    pub fn polish(&mut self, within: f64) {
+        for free in [false, true] {
+            let close = self.beam.within(within).filter(|fit| fit.free == free);
+            let coloured = close.filter(|fit| fit.noise.is_coloured());
+            let wish = |fit: &Fit| Wish { model: fit.model.clone(), noise: fit.noise.clone() };
+            let wishes: Vec<Wish> = coloured.map(wish).collect();
+            self.fit_and_keep(free, &wishes, 4);
+        }
+    }
+
+    /// Goes on from a model: what is an outlier, how fine its steps have to be. The leading fits are
+    /// judged again by the same data and steps.
+    pub fn stand_on(&mut self, model: &Model) {
+        if let Some(y) = self.problem.simulate(model, Grain::Coarse) {
+            self.problem.flag_spikes(&y);
+        }
+        if self.problem.are_too_coarse(&[model]) {
+            self.problem.take_own_steps(&[model]);
+        } else {
+            self.problem.recorrect(model);
+        }
+        self.judge_again();
+    }
+
+    /// Judges the leading fits by the data and steps as they are now.
+    fn judge_again(&mut self) {
+        self.disturbance = Stretches::new(self.problem, Part::Fit);
+        let keys: Vec<SetKey> = self.beam.within(JUDGED_AGAIN).map(Fit::key).collect();
+        let job = |key: &SetKey| self.problem.job(&self.beam.get(key)?.model, Grain::Coarse);
+        let jobs: Vec<_> = keys.iter().map(job).collect();
+        for (key, y) in keys.iter().zip(self.problem.run_built(&jobs, Span::Fit)) {
+            let residual = y.map(|y| self.problem.residual(&y, Part::Fit));
+            let finite = residual.filter(|r| r.iter().all(|v| v.is_finite()));
+            match (finite, self.beam.get_mut(key)) {
+                (Some(residual), Some(fit)) => {
+                    let estimated = self.disturbance.estimate(&residual);
+                    fit.likelihood = estimated.log_likelihood;
+                    fit.noise = estimated.whitener;
+                    fit.residual = residual;
+                }
+                _ => self.beam.remove(key),
+            }
+        }
+    }
+
+    /// Fits the leading models by the integrator's own steps, so that none is favoured by a correction
+    /// that was made about another.
+    pub fn settle(&mut self, within: f64, iterations: usize) {
+        let models: Vec<Model> = self.beam.within(within).map(|fit| fit.model.clone()).collect();
+        if self.problem.has_own_steps() || models.len() < 2 {
+            return;
+        }
+        self.problem.take_own_steps(&models.iter().collect::<Vec<_>>());
+        self.judge_again();
+        for free in [false, true] {
+            let close = self.beam.within(within).filter(|fit| fit.free == free);
+            let wish = |fit: &Fit| Wish { model: fit.model.clone(), noise: fit.noise.clone() };
+            let wishes: Vec<Wish> = close.map(wish).collect();
+            self.fit_and_keep(free, &wishes, iterations);
+        }
+    }
+
+    /// Takes in all candidates for what a model leaves, with finer thresholds where they are blended in.
+    pub fn look_up(&mut self, fit: &Fit) {
+        let n = (fit.residual.len() / self.problem.y.len().max(1)).max(1);
+        let step = self.problem.base.sampling_time;
+        let mut lines: Vec<f64> = vec![];
+        for line in fit.residual.chunks(n).flat_map(|r| strongest(r, step, LINES)) {
+            if !lines.contains(&line) {
+                lines.push(line);
+            }
+        }
+        let all = library(self.problem, self.nominal, &fit.model, lines, self.allowed);
+        let finer = |cause: Arc<Candidate>| {
+            if !(cause.blended() && cause.thresholds) {
+                return cause;
+            }
+            let mut own = Candidate::clone(&cause);
+            own.starts.extend(starts::thresholds(&cause));
+            Arc::new(own)
+        };
+        let nuisance = self.nuisance(fit.free);
+        let candidates: Vec<_> =
+            all.into_iter().filter(|c| !nuisance.frees(c)).map(finer).collect();
+        self.choices = Choices::of(&candidates);
+        self.candidates = candidates;
+    }
+}

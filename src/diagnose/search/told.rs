@@ -1,0 +1,138 @@
+//! What a search found: the headline, its look-alikes, and how probable each of them is.
+
+use std::sync::Arc;
+
+use super::beam::{Beam, Fit, SetKey, name};
+use super::dictionary::Item;
+use crate::candidates::candidate::Candidate;
+use crate::candidates::screen::{Scored, Screen};
+use crate::criteria::LOOK_ALIKE;
+use crate::fit::found::{Belief, SET, Slot};
+use crate::fit::problem::{Grain, Part, Problem};
+use crate::statistics::{dot, project, wald};
+
+/// Candidates that are listed.
+const LISTED: usize = 200;
+/// Others that are said beside a set.
+const OTHERS: usize = 4;
+
+/// Whether a model has a cause of this name.
+fn has(fit: &Fit, wanted: &Candidate) -> bool {
+    fit.model.added.iter().any(|added| added.cause.same_cause(wanted))
+}
+
+/// Whether a model has a cause at the place of another.
+fn has_place(fit: &Fit, wanted: &Candidate) -> bool {
+    let here = |cause: &Candidate| cause.into == wanted.into && cause.of == wanted.of;
+    fit.model.added.iter().any(|added| here(&added.cause))
+}
+
+/// The causes of a headline with what could stand in the place of each: laws of one place share it.
+pub(super) fn slots(problem: &Problem<'_>, beam: &Beam, headline: &Fit) -> Vec<Slot> {
+    let known = headline.model.known();
+    let mut slots: Vec<Slot> =
+        headline.model.added.iter().map(|added| Slot::of(&added.cause)).collect();
+    for own in headline.model.places().into_iter().filter(|own| own[0] >= known) {
+        let slot = slot(problem, beam, headline, &own);
+        own.into_iter().for_each(|i| slots[i] = slot.clone());
+    }
+    slots
+}
+
+fn slot(problem: &Problem<'_>, beam: &Beam, headline: &Fit, own: &[usize]) -> Slot {
+    let model = &headline.model;
+    let laws: Vec<&Arc<Candidate>> = own.iter().map(|&i| &model.added[i].cause).collect();
+    let is_own = |cause: &Candidate| laws.iter().any(|law| law.same_cause(cause));
+    let bare = model.without_all(own);
+    let rest = SetKey::new(headline.free, bare.added.iter().map(|a| name(&a.cause)));
+    let without = beam.get(&rest);
+    // what a member leaves, against what is left without any
+    let squares = |fit: &Fit| dot(&fit.residual, &fit.residual);
+    let base = without.map_or(f64::INFINITY, squares);
+    let gain = |fit: &Fit| match base.is_finite() {
+        true => (base - squares(fit)) / (base - squares(headline)).max(1e-300),
+        false => 1.0,
+    };
+    let mut members: Vec<(f64, Arc<Candidate>, f64)> = vec![];
+    for fit in beam.fits().filter(|fit| fit.free == headline.free) {
+        let is_rest = |cause: &Candidate| bare.added.iter().any(|a| a.cause.same_cause(cause));
+        let causes = fit.model.added.iter().map(|added| &added.cause);
+        let (stay, new): (Vec<_>, Vec<_>) = causes.partition(|cause| is_rest(cause));
+        // in the place of one law or of all of them: one other, or several of one place
+        let (still, other): (Vec<_>, Vec<_>) = new.into_iter().partition(|cause| is_own(cause));
+        let one_place =
+            other.iter().all(|cause| cause.same_cause(other[0]) || cause.same_place(other[0]));
+        if stay.len() == bare.added.len() && still.len() < own.len() && one_place {
+            members.extend(other.into_iter().map(|c| (fit.posterior(), c.clone(), gain(fit))));
+        }
+    }
+    members.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut seen: Vec<Arc<Candidate>> = vec![];
+    members.retain(|(_, cause, _)| {
+        let is_new = !seen.iter().any(|known| known.same_cause(cause));
+        seen.push(cause.clone());
+        is_new
+    });
+    let top = beam.best().map_or(0.0, Fit::posterior);
+    let near = members.iter().filter(|m| (m.0 - top).exp() > LOOK_ALIKE).count();
+    let others = members.split_off(near.min(SET - 1));
+    let mut set = vec![(laws[0].clone(), 1.0)];
+    set.extend(members.into_iter().map(|(_, cause, gain)| (cause, gain)));
+    let chances = set.iter().map(|(c, _)| beam.probability(|fit| has(fit, c))).collect();
+    let belief = Belief {
+        law: beam.probability(|fit| laws.iter().all(|law| has(fit, law))),
+        place: beam.probability(|fit| has_place(fit, laws[0])),
+        members: chances,
+    };
+    let y = |fit: &Fit| problem.simulate(&fit.model, Grain::Coarse);
+    let both = without.and_then(|without| y(without).zip(y(headline)));
+    let score = both.map_or(0.0, |(a, b)| problem.better(&a, &b, Part::Choose));
+    let others = others.into_iter().take(OTHERS).map(|(_, cause, gain)| (cause, gain)).collect();
+    Slot { set, others, score, belief: Some(belief) }
+}
+
+/// The ranking of candidates before any fit.
+pub(super) fn ranking(
+    problem: &Problem<'_>,
+    items: &[Item],
+    residual: &[f64],
+    basis: &[Vec<f64>],
+) -> Screen {
+    let mut left = residual.to_vec();
+    project(basis, &mut left);
+    let mut scored: Vec<Scored> = vec![];
+    let mut at: std::collections::BTreeMap<usize, usize> = Default::default();
+    for item in items {
+        let mut own = item.columns[0].clone();
+        let before = dot(&own, &own);
+        project(basis, &mut own);
+        let size = dot(&own, &own);
+        if !(size > 1e-6 * before) {
+            continue;
+        }
+        let estimate = dot(&own, &left) / size;
+        if item.sign * estimate < 0.0 {
+            continue;
+        }
+        let fitted: Vec<f64> = own.iter().map(|v| estimate * v).collect();
+        let new = Scored {
+            cause: item.cause.clone(),
+            explained: dot(&fitted, &left),
+            score: wald(&problem.per_sample(&fitted, &fitted), &problem.per_sample(&fitted, &left)),
+            kappa: (size / before).sqrt(),
+            unit_effect: size.sqrt(),
+        };
+        match at.get(&item.candidate) {
+            Some(&known) if scored[known].explained >= new.explained => {}
+            Some(&known) => scored[known] = new,
+            None => {
+                at.insert(item.candidate, scored.len());
+                scored.push(new);
+            }
+        }
+    }
+    scored.sort_by(|a, b| b.explained.total_cmp(&a.explained));
+    scored.truncate(LISTED);
+    let (total, columns) = (dot(&left, &left), items.len());
+    Screen { scored, total, columns }
+}

@@ -1,0 +1,60 @@
+//! The veto of data that were not fitted: a likelihood is exact, the model is not.
+//!
+//! A cause stays where the part of the record that chooses is more probable with it than without it:
+//! sum over samples of ln p(y | past, with) - ln p(y | past, without) > REFUTED, both with the numbers
+//! and the disturbance that were fitted elsewhere (prequential: Dawid, JRSS A 147, 1984).
+
+use super::beam::Fit;
+use super::fits::Wish;
+use super::study::Study;
+use crate::criteria::REFUTED;
+use crate::evidence::Stretches;
+use crate::fit::problem::{Added, Grain, Part};
+
+/// Iterations of a fit without a cause.
+const ITERATIONS: usize = 8;
+
+/// A fit without the causes that the held part refutes, and these.
+pub(super) fn vetoed(study: &mut Study<'_, '_>, fit: Fit) -> (Fit, Vec<Added>) {
+    let (mut fit, mut withdrawn) = (fit, vec![]);
+    let held = Stretches::new(study.problem, Part::Choose);
+    while let Some((index, rest)) = refuted(study, &fit, &held) {
+        withdrawn.push(fit.model.added[index].clone());
+        fit = rest;
+    }
+    (fit, withdrawn)
+}
+
+/// The cause that the held part speaks against most, and the fit without it.
+fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<(usize, Fit)> {
+    let all: Vec<usize> = (fit.model.known()..fit.model.added.len()).collect();
+    if study.problem.samples(Part::Choose).next().is_none() || all.is_empty() {
+        return None;
+    }
+    let without: Vec<Fit> = all.iter().map(|&i| less(study, fit, i)).collect::<Option<_>>()?;
+    let models: Vec<_> = std::iter::once(fit).chain(&without).map(|fit| &fit.model).collect();
+    let outputs = study.problem.simulate_all(&models, Grain::Coarse);
+    let density = |(fit, y): (&Fit, crate::fit::problem::Simulated)| {
+        let residual = study.problem.residual(&y?, Part::Choose);
+        let value = held.log_density(&study.disturbance.coloured(&fit.residual), &residual);
+        value.is_finite().then_some(value)
+    };
+    let fits = std::iter::once(fit).chain(&without);
+    let mut densities = fits.zip(outputs).map(density);
+    let with = densities.next()??;
+    let gains: Vec<f64> =
+        densities.map(|bare| bare.map_or(f64::INFINITY, |bare| with - bare)).collect();
+    let (at, gain) = gains.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (gain <= REFUTED).then(|| (all[at], without[at].clone()))
+}
+
+/// The fit without one of its causes.
+fn less(study: &mut Study<'_, '_>, fit: &Fit, index: usize) -> Option<Fit> {
+    let model = fit.model.without(index);
+    let key = Fit { model: model.clone(), ..fit.clone() }.key();
+    if study.beam.get(&key).is_none() {
+        let wish = Wish { model, noise: fit.noise.clone() };
+        study.fit_and_keep(fit.free, &[wish], ITERATIONS);
+    }
+    study.beam.get(&key).cloned()
+}

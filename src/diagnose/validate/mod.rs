@@ -1,0 +1,9 @@
+//! Figures on data that were not fitted: test errors, noise floor, gain, false discoveries.
+
+pub(crate) mod adequacy;
+pub(crate) mod false_discovery;
+pub(crate) mod gain;
+pub(crate) mod goodness_of_fit;
+pub(crate) mod noise_floor;
+pub(crate) mod overlap;
+pub(crate) mod test_error;

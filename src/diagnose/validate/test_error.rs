@@ -1,0 +1,149 @@
+//! The gain, on data that were used for nothing else.
+
+use std::collections::BTreeMap;
+
+use crate::data::Record;
+use crate::evaluate::{EvaluateError, Init, Metrics, Run};
+use crate::system::System;
+use crate::validate::noise_floor::{self, Floor, predicted, predicted_by, repeated};
+
+/// Data that nothing was fitted to or chosen on.
+pub(crate) struct TestData {
+    pub records: Vec<Record>,
+    pub counted: Counted,
+}
+
+/// Which samples of test records count, and which find the starts.
+pub(crate) enum Counted {
+    /// The first ones find the start, the others count.
+    After(Init),
+    /// From these samples on, one per record; what is before them was used, and finds the start.
+    From(Vec<usize>),
+    /// All of them count and find the start: stretches of a system that does not forget it.
+    All,
+}
+
+/// A model's errors on the test data.
+pub(crate) struct Scored {
+    /// Error series per output, all records one after the other.
+    pub errors: Vec<Vec<f64>>,
+    pub metrics: BTreeMap<String, Metrics>,
+}
+
+impl TestData {
+    /// Runs a system along the test data.
+    pub fn score(&self, system: &System) -> Result<Scored, EvaluateError> {
+        let signals = system.signals();
+        let mut errors = vec![vec![]; signals.outputs.len()];
+        let mut pairs: Vec<(Vec<f64>, Vec<f64>)> = vec![(vec![], vec![]); signals.outputs.len()];
+        for (r, record) in self.records.iter().enumerate() {
+            let run = Run::new(system, record)?;
+            let (from, starts) = match &self.counted {
+                Counted::After(init) => {
+                    let count = run.init_samples(*init);
+                    (count, run.starts(count))
+                }
+                Counted::From(from) => (from[r], run.starts(telling(&run, from[r]))),
+                Counted::All => (0, run.starts_of_stretches()),
+            };
+            let track = run.track(starts);
+            for (o, measured) in run.measured.iter().enumerate() {
+                let Some(measured) = measured else { continue };
+                for k in from..measured.len() {
+                    errors[o].push(measured[k] - track.y[o][k]);
+                    pairs[o].0.push(measured[k]);
+                    pairs[o].1.push(track.y[o][k]);
+                }
+            }
+        }
+        let metrics = signals
+            .outputs
+            .iter()
+            .zip(&pairs)
+            .filter_map(|(s, (y, yhat))| Metrics::of(y, yhat).map(|m| (s.name.clone(), m)))
+            .collect();
+        Ok(Scored { errors, metrics })
+    }
+
+    /// Noise of every output, from these records and the baseline's errors on them and on the
+    /// data used, `learnt` by output.
+    pub fn floors(
+        &self,
+        system: &System,
+        before: &Scored,
+        learnt: &[Vec<f64>],
+        drives: &[&[f64]],
+    ) -> Vec<Option<Floor>> {
+        let signals = system.signals();
+        (0..signals.outputs.len())
+            .map(|o| {
+                let whole =
+                    self.records.first().filter(|_| !matches!(self.counted, Counted::From(_)));
+                let periods = whole.and_then(Record::periods);
+                if let (Some(record), Some(periods)) = (whole, periods)
+                    && let Some(y) = record.outputs.get(o)
+                    && let Some(floor) = repeated(&y.values, periods.samples, periods.samples / 10)
+                {
+                    return Some(floor);
+                }
+                let inputs: Vec<Vec<f64>> =
+                    (0..signals.inputs.len()).map(|i| self.input(i)).collect();
+                let lent: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
+                // inputs and errors end together
+                let n = before.errors[o].len();
+                let lent: Vec<&[f64]> =
+                    lent.into_iter().map(|u| &u[u.len().saturating_sub(n)..]).collect();
+                let scored = noise_floor::Left { r: &before.errors[o], drives: &lent };
+                let taught = noise_floor::Left { r: &learnt[o], drives };
+                // either is noise at most
+                let both = [predicted_by(taught, scored), predicted(scored)];
+                both.into_iter().flatten().min_by(|a, b| a.std.total_cmp(&b.std))
+            })
+            .collect()
+    }
+
+    fn input(&self, i: usize) -> Vec<f64> {
+        self.records.iter().filter_map(|r| r.inputs.get(i)).flat_map(|s| s.values.clone()).collect()
+    }
+}
+
+/// How many of the samples before those that count find the start: where it is forgotten long
+/// before these, what comes after that tells nothing of it.
+fn telling(run: &Run<'_>, from: usize) -> usize {
+    let memory = run.memory(from).max(2 * run.plan.sizes.x);
+    if run.drive.segments.len() == 1 && 2 * memory < from { memory } else { from }
+}
+
+/// Mean squares in units of the baseline's own error, averaged over outputs: before, after,
+/// and their floor.
+pub(crate) fn mean_square(errors: &[f64]) -> f64 {
+    let known: Vec<f64> = errors.iter().copied().filter(|e| e.is_finite()).collect();
+    if known.len() < errors.len() && known.is_empty() {
+        return f64::INFINITY;
+    }
+    known.iter().map(|e| e * e).sum::<f64>() / known.len().max(1) as f64
+}
+
+/// Share of the mean square above the floor that is removed from `before` to `after`,
+/// outputs weighed by what the baseline leaves of them.
+pub(crate) fn removed(
+    before: &Scored,
+    from: &Scored,
+    after: &Scored,
+    floors: &[Option<Floor>],
+) -> f64 {
+    let (mut top, mut bottom) = (0.0, 0.0);
+    for o in 0..before.errors.len() {
+        if before.errors[o].is_empty() {
+            continue;
+        }
+        let unit = mean_square(&before.errors[o]);
+        if !(unit > 0.0 && unit.is_finite()) {
+            continue;
+        }
+        let floor = floors[o].map_or(0.0, |f| f.std * f.std).min(unit);
+        top += (mean_square(&from.errors[o]) - mean_square(&after.errors[o])) / unit;
+        bottom += (unit - floor) / unit;
+    }
+    if bottom > 1e-12 { (top / bottom).clamp(0.0, 1.0) } else { 0.0 }
+}
