@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::candidates::library::Allowed;
 use super::fit::covariance::Precision;
-use super::fit::finished::{Finished, moved_together};
+use super::fit::finished::{Finished, moved_along_ridge};
 use super::fit::found::Found;
 use super::fit::hypothesis::{Moved, Track};
 use super::fit::nuisance::Nuisance;
@@ -75,7 +75,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
             }
         }
         let precision = Precision::new(self.problem, &nuisance, &fitted);
-        let moved_together = moved_together(&nuisance, &fitted, precision.as_ref());
+        let moved_along_ridge = moved_along_ridge(&nuisance, &fitted, precision.as_ref());
         let dependence = dependence(self.problem, self.nominal, &y);
         let mut finished = Finished {
             track,
@@ -84,7 +84,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
             nuisance,
             precision,
             moved: vec![],
-            moved_together,
+            moved_along_ridge,
             y,
             dependence,
             inside: None,

@@ -41,12 +41,12 @@ pub use findings::closed_loop::ClosedLoop;
 pub use findings::distortion::{AtLines, Distortion, distortion};
 pub use findings::error_band::Regime;
 pub use findings::finding::{
-    Alone, Curve, FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts,
-    Scores, Series, Verdict,
+    Curve, FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores,
+    Series, SingleRecord, Verdict,
 };
 pub use findings::note::{Disturbance, Disturbs, Note};
 pub use findings::per_record::InRecord;
 pub use fit::hypothesis::{Moved, Track};
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
-pub use validate::goodness_of_fit::Checked;
+pub use validate::goodness_of_fit::GoodnessOfFit;
 pub use validate::noise_floor::NoiseFloor;

@@ -66,19 +66,19 @@ impl Diagnosis<'_> {
         let looked = match unresolved(self.system, records)? {
             Some(notes) => {
                 let searched = self.figures(records, test, watch)?;
-                Looked { searched, faults: vec![], notes, alone: vec![] }
+                Looked { searched, faults: vec![], notes, single_records: vec![] }
             }
             None => match horizon(self.system, records)? {
                 None => self.in_one_go(records, test, watch)?,
                 Some(length) => self.by_stretches(records, test, length, watch)?,
             },
         };
-        let Looked { searched, mut faults, notes, alone } = looked;
+        let Looked { searched, mut faults, notes, single_records } = looked;
         faults.extend(coarse(&searched.noise_floor, records));
         let around = Around {
             faults,
             notes,
-            alone,
+            single_records,
             distortion: distortion(records),
             record: RecordFacts {
                 records: records.len(),
@@ -120,7 +120,7 @@ impl Diagnosis<'_> {
             self.mended(records, test)?;
         if blind {
             let searched = self.figures(records, test, watch)?;
-            return Ok(Looked { searched, faults, notes: vec![], alone: vec![] });
+            return Ok(Looked { searched, faults, notes: vec![], single_records: vec![] });
         }
         let (records, test) = (mended, of_test);
         let searched = match clock {
@@ -131,13 +131,13 @@ impl Diagnosis<'_> {
                 searched
             }
         };
-        let alone = self.alone(&searched, &records, watch)?;
-        let searched = match alone.is_empty() {
+        let single_records = self.single_records(&searched, &records, watch)?;
+        let searched = match single_records.is_empty() {
             true => searched,
             // what is named together is a compromise that none of the records has
             false => self.search(&records, test.as_ref(), 0, watch)?,
         };
-        Ok(Looked { searched, faults, notes: vec![], alone })
+        Ok(Looked { searched, faults, notes: vec![], single_records })
     }
 
     /// The search for what the model itself gets wrong, on records without faults but spikes.
@@ -179,7 +179,7 @@ impl Diagnosis<'_> {
         let firsts = firsts(records);
         let (start, fixed) = (&whole.start, &self.allowed.fixed);
         let from = Source { start, test: &test, used, firsts: &firsts, fixed };
-        let searched = whole.teller().tell(&chosen, other.as_ref(), &from)?;
+        let searched = whole.context().findings(&chosen, other.as_ref(), &from)?;
         Ok(innovations::completed(looked_at.as_ref().unwrap_or(&whole), &chosen, searched))
     }
 

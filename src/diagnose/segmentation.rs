@@ -83,9 +83,9 @@ impl Diagnosis<'_> {
         let begin: Vec<usize> = begin.iter().map(|&(r, from)| firsts[r] + from).collect();
         let (start, fixed) = (&prepared.start, &self.allowed.fixed);
         let from = Source { start, test: &test, used: &stretches, firsts: &begin, fixed };
-        let searched = prepared.teller().tell(&chosen, other.as_ref(), &from)?;
+        let searched = prepared.context().findings(&chosen, other.as_ref(), &from)?;
         let notes = vec![Note::Stretches { length, seconds: length as f64 * step, count }];
-        Ok(Looked { searched, faults, notes, alone: vec![] })
+        Ok(Looked { searched, faults, notes, single_records: vec![] })
     }
 }
 

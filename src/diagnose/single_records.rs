@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
-use super::findings::finding::{Alone, Verdict};
+use super::findings::finding::{SingleRecord, Verdict};
 use super::findings::hand_over::Searched;
 use super::findings::per_record::InRecord;
 use super::prepare::joined_records::name_of;
@@ -24,12 +24,12 @@ impl Diagnosis<'_> {
     ///
     /// Told is what is more probable for that record, with nothing in the others, than what is named
     /// together: its sum of squares is smaller, at no more numbers.
-    pub(super) fn alone(
+    pub(super) fn single_records(
         &self,
         searched: &Searched,
         records: &[Record],
         watch: &dyn Watch,
-    ) -> Result<Vec<Alone>, DiagnoseError> {
+    ) -> Result<Vec<SingleRecord>, DiagnoseError> {
         let mut found = vec![];
         let named = searched.causes.iter().any(|cause| !cause.is_data_fault());
         let differs = |said: &InRecord| said.shows == Some(false);
@@ -75,7 +75,7 @@ impl Diagnosis<'_> {
             }
             let mut cause = first.clone();
             cause.records = Some(said);
-            found.push(Alone { record: name.clone(), cause });
+            found.push(SingleRecord { record: name.clone(), cause });
         }
         Ok(found)
     }

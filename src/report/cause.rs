@@ -99,11 +99,11 @@ fn rivals(page: &mut Page, cause: &Cause) {
 
 /// The section of causes that single ones of several records show.
 pub fn alone(page: &mut Page, finding: &Finding) {
-    if finding.alone.is_empty() {
+    if finding.single_records.is_empty() {
         return;
     }
     page.heading("Single records");
-    for alone in &finding.alone {
+    for alone in &finding.single_records {
         let said = format!("{} on its own: {}", alone.record, sentences::cause(&alone.cause));
         page.element("p", "", &said);
         shown(page, alone.cause.records.as_deref().unwrap_or_default());

@@ -30,8 +30,8 @@ fn shown(cause: &Cause) -> Vec<Option<bool>> {
 fn friction_in_one_of_two_records_is_reported_so() {
     let finding = found(&[named("est1.csv", false, 2500, 1), named("est2.csv", true, 2500, 2)]);
     // together they agree on nothing
-    let alone = &finding.alone[0];
-    assert_eq!((finding.alone.len(), alone.record.as_str()), (1, "est2.csv"));
+    let alone = &finding.single_records[0];
+    assert_eq!((finding.single_records.len(), alone.record.as_str()), (1, "est2.csv"));
     assert_eq!(alone.cause.effect, "coulomb_friction");
     assert_eq!(shown(&alone.cause), [Some(false), Some(true)]);
     let records = alone.cause.records.clone().unwrap();
@@ -64,7 +64,7 @@ fn damping_that_is_off_in_all_records_but_one_is_said_not_to_show_there() {
     let text = sentences::cause(cause);
     assert!(text.contains(" only (not in est1.csv"), "{text}");
     assert!(Report::of(&finding).html().contains(">record</th>"));
-    assert!(finding.alone.is_empty());
+    assert!(finding.single_records.is_empty());
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn friction_in_both_records_is_nothing_to_speak_of() {
 #[test]
 fn nothing_in_any_record_and_one_record_alone_say_nothing() {
     let finding = found(&[named("est1.csv", false, 2500, 5), named("est2.csv", false, 2500, 6)]);
-    assert!(finding.causes.is_empty() && finding.alone.is_empty());
+    assert!(finding.causes.is_empty() && finding.single_records.is_empty());
     assert!(!remarked(&finding, "on its own"));
     let finding = found(&[named("est2.csv", true, 2500, 2)]);
     assert!(finding.causes[0].records.is_none() && document(&finding).get("alone").is_none());
@@ -98,7 +98,7 @@ fn a_record_at_rest_cannot_tell() {
     rest.outputs[0].values = noise::white(800, 0.02, 6).unwrap();
     let finding =
         found(&[named("est1.csv", false, 2500, 7), named("est2.csv", true, 2500, 8), rest]);
-    let cause = &finding.alone[0].cause;
+    let cause = &finding.single_records[0].cause;
     assert_eq!(shown(cause), [Some(false), Some(true), None], "{:?}", cause.records);
     assert!(remarked(&finding, "rest.csv could not show it"));
 }

@@ -62,7 +62,7 @@ impl Autoregressive {
         for s in stretches {
             let (x, out) = (&r[s.clone()], &mut out[s.clone()]);
             for t in 0..x.len().min(order) {
-                out[t] = (x[t] - foretold(&self.predictors[t], x, t)) * over[t];
+                out[t] = (x[t] - predicted(&self.predictors[t], x, t)) * over[t];
             }
             for t in order..x.len() {
                 out[t] = (x[t] - dot(&turned, &x[t - order..t])) * over[order];
@@ -78,7 +78,7 @@ impl Autoregressive {
             let (w, x) = (&white[s.clone()], &mut out[s.clone()]);
             for t in 0..w.len() {
                 let p = t.min(order);
-                let past = foretold(&self.predictors[p], x, t);
+                let past = predicted(&self.predictors[p], x, t);
                 x[t] = w[t] * sizes[p] + past;
             }
         }
@@ -108,7 +108,7 @@ impl Autoregressive {
 }
 
 /// What a predictor says of sample `t` of `x`.
-fn foretold(predictor: &[f64], x: &[f64], t: usize) -> f64 {
+fn predicted(predictor: &[f64], x: &[f64], t: usize) -> f64 {
     predictor.iter().enumerate().map(|(i, a)| a * x[t - 1 - i]).sum()
 }
 

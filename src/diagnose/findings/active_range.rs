@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::candidates::coordinate::along;
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::fit::problem::{Grain, Model};
 
 /// An effect acts where it is beyond this share of its largest value,
@@ -43,7 +43,7 @@ pub struct ActsWhere {
     pub share_of_time: f64,
 }
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// Whether laws of one place with a bend are a straight line in nearly all of the record.
     pub fn is_straight(&self, model: &Model, own: &[usize]) -> bool {
         let bends = |&i: &usize| model.added[i].cause.card.properties.piecewise_linear;
@@ -129,7 +129,7 @@ fn part(z: &[f64], law: &dyn Fn(&[f64]) -> Vec<f64>) -> Option<ActingPart> {
 mod tests {
     use super::*;
 
-    fn told(law: fn(f64) -> f64) -> Option<(Option<f64>, Option<f64>, f64)> {
+    fn range_of(law: fn(f64) -> f64) -> Option<(Option<f64>, Option<f64>, f64)> {
         let z: Vec<f64> = (0..1000).map(|k| (f64::from(k) * 0.1).sin()).collect();
         let all = |z: &[f64]| -> Vec<f64> { z.iter().map(|z| law(*z)).collect() };
         part(&z, &all).map(|p| (p.below, p.above, p.share))
@@ -145,15 +145,15 @@ mod tests {
 
     #[test]
     fn stops_act_in_a_part_and_springs_everywhere() {
-        let (below, above, share) = told(|z| -10.0 * (z - 0.5).max(0.0)).unwrap();
+        let (below, above, share) = range_of(|z| -10.0 * (z - 0.5).max(0.0)).unwrap();
         assert!(below.is_none() && (above.unwrap() - 0.5).abs() < 2e-3);
         assert!((share - 0.333).abs() < 0.01, "{share}");
-        let (below, above, _) = told(|z| z.clamp(-0.8, 0.9) - z).unwrap();
+        let (below, above, _) = range_of(|z| z.clamp(-0.8, 0.9) - z).unwrap();
         assert!((below.unwrap() + 0.8).abs() < 2e-3 && (above.unwrap() - 0.9).abs() < 2e-3);
         for law in [|z: f64| z, |z: f64| z * z, |z: f64| z.powi(3), |z: f64| (50.0 * z).tanh()] {
-            assert_eq!(told(law), None);
+            assert_eq!(range_of(law), None);
         }
         // never reached
-        assert_eq!(told(|z| (z - 2.0).max(0.0)), None);
+        assert_eq!(range_of(|z| (z - 2.0).max(0.0)), None);
     }
 }

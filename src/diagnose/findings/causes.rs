@@ -7,7 +7,7 @@ use crate::candidates::naming::title_of;
 use crate::candidates::sums::by_size;
 use crate::error::DiagnoseError;
 use crate::findings::cause::{Alternative, Cause, ColumnFault, LawPart, Site, Value, Wording};
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::fit::finished::Finished;
 use crate::fit::found::SET;
 use crate::fit::problem::{Added, Grain};
@@ -34,7 +34,7 @@ pub(crate) struct Scores<'a> {
     pub several: bool,
 }
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// The causes that were added to the model, then the parameters that moved.
     pub fn causes(&self, chosen: &Finished, by: &Scores<'_>) -> Result<Vec<Cause>, DiagnoseError> {
         let places = chosen.fitted.model.places().into_iter();
@@ -75,7 +75,8 @@ impl Teller<'_, '_> {
         }
         let laws: Vec<_> = own.iter().map(|&i| model.added[i].cause.name()).collect();
         let (indistinguishable, runners_up) = alternatives(cause, slot, share, laws);
-        let records = bare.filter(|_| by.several).and_then(|bare| self.shown(&bare, &chosen.y));
+        let records =
+            bare.filter(|_| by.several).and_then(|bare| self.per_record(&bare, &chosen.y));
         let acts_where = self.acts_where(model, &own);
         parts[0].wording.is_line_here = acts_where.is_none() && self.is_straight(model, &own);
         Ok(Cause {

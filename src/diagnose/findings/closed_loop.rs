@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 use crate::data::Record;
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::fit::finished::Finished;
 use crate::fit::problem::{Part, Problem};
 use crate::prepare::operating_range::Nominal;
@@ -46,7 +46,7 @@ pub struct ClosedLoop {
     pub same_sample_only: bool,
 }
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// The input that reacts most to the outputs, if one does.
     pub fn feedback(&self, chosen: &Finished, used: &[Record]) -> Option<ClosedLoop> {
         // what repeats exactly while the noise does not reacts to nothing

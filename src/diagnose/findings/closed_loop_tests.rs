@@ -38,7 +38,7 @@ fn coloured(pole: f64, size: f64, seed: u64) -> Vec<f64> {
 }
 
 /// Both scores of the one input.
-fn told(u: Vec<f64>, e: Vec<f64>) -> (f64, f64) {
+fn of_one(u: Vec<f64>, e: Vec<f64>) -> (f64, f64) {
     scores(&[u], &[e], from_ref(&(0..N)))[0]
 }
 
@@ -49,7 +49,7 @@ fn no_loop_is_seen_where_none_is() {
         for pole in [0.0, 0.9] {
             for seed in 1..=40 {
                 let u = excitation.generate(N, 0.1, seed).unwrap();
-                let (at_once, later) = told(u, coloured(pole, 0.3, 1000 + seed));
+                let (at_once, later) = of_one(u, coloured(pole, 0.3, 1000 + seed));
                 let score = at_once.max(later);
                 largest = largest.max(score);
                 if score > REACTS {
@@ -88,9 +88,9 @@ fn a_loop_is_seen() {
         let (mut later, mut any) = (0, 0);
         for seed in 1..=40 {
             let (u, e) = controlled(2.0, late, pole, size, seed);
-            let told = told(u, e);
-            later += usize::from(told.1 > REACTS);
-            any += usize::from(told.0.max(told.1) > REACTS);
+            let found = of_one(u, e);
+            later += usize::from(found.1 > REACTS);
+            any += usize::from(found.0.max(found.1) > REACTS);
         }
         println!(
             "{late} late, pole {pole}, noise {size}: {later} with a delay, {any} at all, of 40"

@@ -8,7 +8,7 @@ use crate::system::System;
 use crate::validate::test_error::TestData;
 
 /// What is reported from.
-pub(crate) struct Teller<'a, 'b> {
+pub(crate) struct Context<'a, 'b> {
     pub system: &'a System,
     pub problem: &'a Problem<'b>,
     pub nominal: &'a Nominal,

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::fit::finished::Finished;
 use crate::fit::problem::Part;
 use crate::prepare::input_dependence::DEPENDS;
@@ -55,7 +55,7 @@ pub struct Regime {
     pub resolution: f64,
 }
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// Where each output's error lives, if it keeps to a part of the frequencies. `named` says whether
     /// a cause in the machine is named.
     pub fn regimes(

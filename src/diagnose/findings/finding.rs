@@ -66,7 +66,7 @@ pub struct Scores {
 
 /// What one of several records shows on its own, where all of them together name no cause.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Alone {
+pub struct SingleRecord {
     /// The record: its file, or its number.
     pub record: String,
     /// Its first cause, and what each record says of the model that is extended by all of its
@@ -193,7 +193,7 @@ pub struct Finding {
     pub regime: BTreeMap<String, Regime>,
     /// What single ones of several records show, where all together name no cause.
     #[serde(skip)]
-    pub alone: Vec<Alone>,
+    pub single_records: Vec<SingleRecord>,
     /// The input that reacts to the outputs, if one does.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub closed_loop: Option<ClosedLoop>,

@@ -6,7 +6,7 @@ use crate::candidates::network_start::value;
 use crate::digits::number;
 use crate::effect::View;
 use crate::findings::cause::FoundShape;
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::findings::finding::Curve;
 use crate::findings::pictures::curves;
 use crate::fit::finished::Finished;
@@ -238,7 +238,7 @@ fn slices(problem: &Problem<'_>, nominal: &Nominal, model: &Model) -> Vec<Curve>
     model.added.iter().enumerate().filter_map(picture).collect()
 }
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// Pictures of all causes that can be drawn.
     pub fn pictures(&self, chosen: &Finished) -> Vec<Curve> {
         let (problem, nominal, model) = (self.problem, self.nominal, &chosen.fitted.model);

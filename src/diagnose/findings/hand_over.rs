@@ -7,7 +7,7 @@ use crate::findings::cause::{Alternative, Cause, MissingForce, Withdrawn};
 use crate::findings::closed_loop::ClosedLoop;
 use crate::findings::distortion::Distortion;
 use crate::findings::error_band::Regime;
-use crate::findings::finding::Alone;
+use crate::findings::finding::SingleRecord;
 use crate::findings::finding::{
     FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores, Series,
     Verdict,
@@ -48,7 +48,7 @@ pub(crate) struct Looked {
     pub searched: Searched,
     pub faults: Vec<Fault>,
     pub notes: Vec<Note>,
-    pub alone: Vec<Alone>,
+    pub single_records: Vec<SingleRecord>,
 }
 
 /// What is known of the records beside the search.
@@ -57,7 +57,7 @@ pub(crate) struct Around {
     pub faults: Vec<Fault>,
     /// What holds of the records whatever was found.
     pub notes: Vec<Note>,
-    pub alone: Vec<Alone>,
+    pub single_records: Vec<SingleRecord>,
     pub distortion: BTreeMap<String, Distortion>,
     pub record: RecordFacts,
     pub interrupted: bool,
@@ -110,7 +110,7 @@ impl Searched {
             not_found: self.not_found,
             distortion: around.distortion,
             regime: self.regime,
-            alone: around.alone,
+            single_records: around.single_records,
             closed_loop: self.closed_loop,
             notes: around.notes.into_iter().chain(self.notes).collect(),
             interrupted: around.interrupted,

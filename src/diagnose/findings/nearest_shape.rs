@@ -7,7 +7,7 @@ use crate::candidates::candidate::Candidate;
 use crate::candidates::free_curve::{self, Drawing, Sketch};
 use crate::effect::{Mechanism, Needs, Role, ShapeOf, View, curve};
 use crate::findings::cause::FoundShape;
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::findings::finding::Curve;
 use crate::findings::note::Note;
 use crate::fit::finished::Finished;
@@ -21,7 +21,7 @@ const ALIKE: f64 = 0.9;
 /// A shape with more numbers in it must leave so much less.
 const BETTER: f64 = 0.7;
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// What is known of a curve of unknown shape.
     pub fn found_curve(&self, cause: &Candidate, knobs: &[f64]) -> FoundShape {
         let most = knobs.iter().fold(0.0_f64, |m, v| m.max(v.abs()));

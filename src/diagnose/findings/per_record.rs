@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::Serialize;
 
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::fit::problem::{Grain, Model, Part};
 use crate::statistics::weight;
 
@@ -31,10 +31,10 @@ pub struct InRecord {
     pub shows: Option<bool>,
 }
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// What each of several records says of what the extended model, with outputs `with`, has beyond a
     /// model without one of its causes.
-    pub fn shown(&self, without: &Model, with: &[Vec<f64>]) -> Option<Vec<InRecord>> {
+    pub fn per_record(&self, without: &Model, with: &[Vec<f64>]) -> Option<Vec<InRecord>> {
         let bare = self.problem.simulate(without, Grain::Fine)?;
         Some(self.in_records(&bare, with))
     }
@@ -82,7 +82,7 @@ mod tests {
     use crate::data::noise;
 
     /// The weight that a record gives to f where it holds `share` of it, in red noise.
-    fn told(share: f64, size: f64, seed: u64) -> InRecord {
+    fn weighed(share: f64, size: f64, seed: u64) -> InRecord {
         let f = noise::ar1(2000, 0.8, size, seed).unwrap();
         let e = noise::ar1(2000, 0.9, 1.0, 1000 + seed).unwrap();
         let ff: Vec<f64> = f.iter().map(|f| f * f).collect();
@@ -94,9 +94,9 @@ mod tests {
     fn records_with_and_without_and_too_short_of_words() {
         let (mut wrong, mut quiet) = (0, 0);
         for seed in 1..=100 {
-            wrong += usize::from(told(1.0, 0.5, seed).shows != Some(true));
-            wrong += usize::from(told(0.0, 0.5, seed).shows != Some(false));
-            quiet += usize::from(told(0.0, 0.02, seed).shows != Some(false));
+            wrong += usize::from(weighed(1.0, 0.5, seed).shows != Some(true));
+            wrong += usize::from(weighed(0.0, 0.5, seed).shows != Some(false));
+            quiet += usize::from(weighed(0.0, 0.02, seed).shows != Some(false));
         }
         println!("{wrong} of 200 wrong, {quiet} of 100 silent");
         assert!(wrong <= 4 && quiet > 60, "{wrong}, {quiet}");

@@ -2,7 +2,7 @@
 
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::findings::cause::Cause;
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::findings::finding::NotFound;
 use crate::findings::note::Note;
 use crate::fit::finished::Finished;
@@ -15,7 +15,7 @@ use crate::statistics::{corrected_score, rms};
 /// Least score, as a normal one, of what a record is said to show.
 const SEEN: f64 = 3.45;
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// The smallest size of every candidate that would have been seen.
     pub fn not_found(&self, chosen: &Finished) -> Vec<NotFound> {
         let Some(screen) = &chosen.found.first else { return vec![] };

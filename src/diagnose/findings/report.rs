@@ -7,7 +7,7 @@ use crate::data::Record;
 use crate::error::DiagnoseError;
 use crate::evaluate::Metrics;
 use crate::findings::causes::Scores as By;
-use crate::findings::context::{Source, Teller};
+use crate::findings::context::{Context, Source};
 use crate::findings::finding::{Left, OtherTrack, Ranked, Scores, Series, Verdict};
 use crate::findings::hand_over::Searched;
 use crate::findings::remarks::made_up_for;
@@ -32,9 +32,9 @@ const MOST: f64 = 0.5;
 /// Score of the Ljung-Box test below which a residual counts as white.
 const WHITE: f64 = 3.0;
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// Everything that a search says of the machine and its records.
-    pub fn tell(
+    pub fn findings(
         &self,
         chosen: &Finished,
         other: Option<&Finished>,

@@ -2,12 +2,12 @@
 
 use crate::error::DiagnoseError;
 use crate::findings::cause::{Cause, Value, Withdrawn};
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::fit::finished::Finished;
 use crate::fit::problem::Added;
 use crate::validate::test_error::{Scored, TestData};
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// What the search took back, with what it would do to the test data: `after` are the errors of
     /// the extended model without it.
     pub(crate) fn withdrawn(

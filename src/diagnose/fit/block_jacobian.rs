@@ -4,12 +4,12 @@
 use crate::fit::keys::Key;
 use crate::fit::problem::{Part, Problem};
 
-/// Which unknowns are moved together.
-pub(crate) struct Together {
+/// Which unknowns are moved blocks.
+pub(crate) struct Blocks {
     groups: Vec<Vec<usize>>,
 }
 
-impl Together {
+impl Blocks {
     pub fn new(keys: &[Key]) -> Self {
         let mut groups: Vec<Vec<usize>> = vec![];
         for (j, key) in keys.iter().enumerate() {
@@ -84,14 +84,14 @@ mod tests {
     #[test]
     fn a_state_moves_in_all_segments_at_once() {
         let keys = [Key::Start(0, 0), Key::Start(0, 1), Key::Start(1, 0), Key::Theta(3)];
-        let together = Together::new(&keys);
-        assert_eq!(together.groups, [vec![0, 2], vec![1], vec![3]]);
+        let blocks = Blocks::new(&keys);
+        assert_eq!(blocks.groups, [vec![0, 2], vec![1], vec![3]]);
         let alone: Vec<Vec<f64>> = (0..4)
             .map(|j| {
                 (0..4).map(|i| if i == j { 10.0 + f64::from(i) } else { f64::from(i) }).collect()
             })
             .collect();
-        let points = together.points(&[0.0, 1.0, 2.0, 3.0], &alone);
+        let points = blocks.points(&[0.0, 1.0, 2.0, 3.0], &alone);
         assert_eq!(points[0], [10.0, 1.0, 12.0, 3.0]);
         assert_eq!(points[2], [0.0, 1.0, 2.0, 13.0]);
     }

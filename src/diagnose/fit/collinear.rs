@@ -15,7 +15,8 @@ impl Tracks<'_, '_> {
     /// The same story with the one parameter moved that tells it best, if none is named yet and
     /// one is enough; else with the one named that went furthest.
     pub(crate) fn off_the_ridge(&mut self, mut all: Finished) -> Option<Finished> {
-        let lost = all.track == Track::ParametersFree && all.moved.is_empty() && all.moved_together;
+        let lost =
+            all.track == Track::ParametersFree && all.moved.is_empty() && all.moved_along_ridge;
         if !lost {
             return Some(all);
         }

@@ -25,7 +25,7 @@ pub(crate) struct Finished {
     pub precision: Option<Precision>,
     pub moved: Vec<Moved>,
     /// Whether parameters moved along a ridge, where none of them has to.
-    pub moved_together: bool,
+    pub moved_along_ridge: bool,
     /// Outputs of the final fit over all data.
     pub y: Arc<Vec<Vec<f64>>>,
     /// Score that what is left depends on the inputs.
@@ -36,7 +36,7 @@ pub(crate) struct Finished {
 
 /// Whether the free parameters, all together, are further from where they began than their
 /// errors allow: along a ridge none of them alone may be.
-pub(crate) fn moved_together(
+pub(crate) fn moved_along_ridge(
     nuisance: &Nuisance,
     fitted: &Fitted,
     precision: Option<&Precision>,

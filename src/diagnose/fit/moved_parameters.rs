@@ -5,7 +5,7 @@ use crate::effect::Mechanism;
 use crate::error::DiagnoseError;
 use crate::findings::cause::{Cause, LawPart, Site, Value, Wording};
 use crate::findings::causes::Scores;
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::fit::finished::Finished;
 use crate::fit::problem::Model;
 use crate::fit::refit::{Refit, refit};
@@ -20,7 +20,7 @@ fn parameter_effect() -> &'static str {
     own.into_iter().find(|(_, by)| *by == Mechanism::Parameter).map_or("", |(name, _)| name)
 }
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// Parameters that the chosen track moved, as causes.
     pub(crate) fn moved(
         &self,
@@ -40,7 +40,8 @@ impl Teller<'_, '_> {
                 }
                 None => (0.0, 1.0),
             };
-            let records = back.filter(|_| by.several).and_then(|back| self.shown(&back, &chosen.y));
+            let records =
+                back.filter(|_| by.several).and_then(|back| self.per_record(&back, &chosen.y));
             let unit = parameters[p].unit.clone();
             let value = Value {
                 name: "value".into(),

@@ -2,7 +2,7 @@
 //! where they are free.
 
 use crate::candidates::candidate::{Candidate, Wire};
-use crate::fit::block_jacobian::Together;
+use crate::fit::block_jacobian::Blocks;
 pub(crate) use crate::fit::keys::{Key, get, set};
 use crate::fit::problem::{Grain, Job, Model, Part, Problem, Simulated, Span};
 use crate::optimise::Unknown;
@@ -133,18 +133,18 @@ impl Nuisance {
             point
         };
         let alone: Vec<Vec<f64>> = keys.iter().enumerate().map(alone).collect();
-        let together = Together::new(&keys);
+        let blocks = Blocks::new(&keys);
         let job = |point: &Vec<f64>| {
             let mut moved = model.clone();
             keys.iter().zip(point).for_each(|(&key, &value)| set(&mut moved, key, value));
             problem.job(&moved, Grain::Coarse)
         };
-        let jobs: Option<Vec<Job>> = together.points(&at, &alone).iter().map(job).collect();
+        let jobs: Option<Vec<Job>> = blocks.points(&at, &alone).iter().map(job).collect();
         let Some(jobs) = jobs else { return vec![] };
         let residual = |y: Simulated| y.map(|y| problem.residual(&y, Part::Fit));
         let answers = problem.run(&jobs, Span::Fit).into_iter().map(residual).collect();
         let mut basis: Vec<Vec<f64>> = vec![];
-        for r in together.apart(&keys, problem, Part::Fit, &r0, answers).into_iter().flatten() {
+        for r in blocks.apart(&keys, problem, Part::Fit, &r0, answers).into_iter().flatten() {
             let column = r0.iter().zip(&r).map(|(a, b)| a - b).collect();
             add_to_basis(&mut basis, column);
         }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use crate::evidence::Whitener;
-use crate::fit::block_jacobian::Together;
+use crate::fit::block_jacobian::Blocks;
 pub(crate) use crate::fit::fitted::{Fitted, Refit};
 use crate::fit::nuisance::{Key, Nuisance, set};
 use crate::fit::problem::{Job, Model, Problem, Simulated};
@@ -107,12 +107,12 @@ fn once(
         for ((keys, run), model) in runs.iter_mut().zip(models) {
             let mut points = run.propose();
             if run.wants_columns() {
-                points = Together::new(keys).points(&run.point, &points);
+                points = Blocks::new(keys).points(&run.point, &points);
             } else if let next = run.next_but_one()
                 && !next.is_empty()
             {
                 // what is asked for after the start is worked out beside it
-                points.extend(Together::new(keys).points(&run.point, &next));
+                points.extend(Blocks::new(keys).points(&run.point, &next));
             }
             let job = |point: &Vec<f64>| problem.job(&moved(model, keys, point), how.grain);
             // a model that cannot be built has no residuals anywhere
@@ -145,7 +145,7 @@ fn once(
             }
             if run.wants_columns() {
                 let present = &run.residuals;
-                run.absorb(Together::new(keys).apart(keys, problem, part, present, own));
+                run.absorb(Blocks::new(keys).apart(keys, problem, part, present, own));
             } else {
                 run.absorb(own);
             }

@@ -12,9 +12,9 @@
 //! (Schwarz, Annals of Statistics 6, 1978; Ljung, "System Identification", 2nd ed., 1999, section 16.4).
 
 mod compete;
+mod conversion;
 mod missing;
 mod reconsidered;
-mod told;
 
 pub(crate) use missing::completed;
 pub(crate) use reconsidered::{finish, search};

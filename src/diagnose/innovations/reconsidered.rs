@@ -3,7 +3,7 @@
 use crate::likelihood::Predictor;
 
 use super::compete::{Rivals, extended, left, predictor, step};
-use super::told::{carried_over, finished};
+use super::conversion::{carried_over, finished};
 use crate::candidates::library::Allowed;
 use crate::error::DiagnoseError;
 use crate::fit::finished::Finished;
@@ -91,7 +91,7 @@ fn by_innovations(
 ) -> Option<Finished> {
     let problem = &prepared.problem;
     let base = predictor(problem, &answer.fitted.model, allowed).ok()?;
-    let system = prepared.teller().extend(&answer.fitted.model).ok()?;
+    let system = prepared.context().extend(&answer.fitted.model).ok()?;
     let known = extended(&base, &system, step(problem))?;
     let rivals = Rivals::of(&known);
     if !rivals.call_for_more(CLEARLY) || watch.stopped() {
@@ -114,7 +114,7 @@ fn by_innovations(
 
 /// Parameters moved; along a ridge it is one, whichever.
 fn count_moved(answer: &Finished) -> usize {
-    answer.moved.len().max(usize::from(answer.moved_together))
+    answer.moved.len().max(usize::from(answer.moved_along_ridge))
 }
 
 /// What the causes of an answer take: their numbers, and what they were chosen from.

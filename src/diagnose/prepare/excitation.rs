@@ -3,7 +3,7 @@
 //! A system that is not excited cannot be told from any other (persistence of excitation: Ljung,
 //! System Identification, 2nd ed. 1999, section 13.2). What is noted here forbids nothing.
 
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::findings::note::Note;
 use crate::fit::problem::Part;
 use crate::statistics::{deviation, mean};
@@ -14,7 +14,7 @@ const PER_UNKNOWN: usize = 10;
 /// Share of its size below which a series does not move.
 const STILL: f64 = 1e-12;
 
-impl Teller<'_, '_> {
+impl Context<'_, '_> {
     /// What has to be known of the record before any finding; `y` is what the model makes of it.
     pub fn of_the_record(&self, y: &[Vec<f64>]) -> Vec<Note> {
         let signals = &self.problem.base.signals;

@@ -6,7 +6,7 @@ use crate::data::Record;
 use crate::error::DiagnoseError;
 use crate::evaluate::{EvaluateError, Init, Run};
 use crate::final_fit::Tracks;
-use crate::findings::context::Teller;
+use crate::findings::context::Context;
 use crate::fit::finished::Finished;
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Model, Problem};
@@ -98,9 +98,9 @@ impl<'a> Prepared<'a> {
     }
 
     /// What tells of the findings.
-    pub fn teller(&self) -> Teller<'_, 'a> {
+    pub fn context(&self) -> Context<'_, 'a> {
         let Self { problem, nominal, joined, .. } = self;
-        Teller { system: problem.system, problem, nominal, joined }
+        Context { system: problem.system, problem, nominal, joined }
     }
 
     /// Searches both tracks; the chosen one comes first.

@@ -2,7 +2,7 @@
 //! free number does.
 
 use crate::candidates::candidate::Wire;
-use crate::fit::block_jacobian::Together;
+use crate::fit::block_jacobian::Blocks;
 use crate::fit::nuisance::{Key, Nuisance, get, set};
 use crate::fit::problem::{Added, Grain, Job, Model, Part, Problem, Simulated, Span};
 
@@ -73,19 +73,19 @@ pub(super) fn tangents(
             point
         })
         .collect();
-    let together = Together::new(&keys);
+    let blocks = Blocks::new(&keys);
     let job = |point: &Vec<f64>| {
         let mut moved = model.clone();
         keys.iter().zip(point).for_each(|(&key, &value)| set(&mut moved, key, value));
         problem.job(&moved, Grain::Coarse)
     };
-    let jobs: Vec<Option<Job>> = together.points(&at, &alone).iter().map(job).collect();
+    let jobs: Vec<Option<Job>> = blocks.points(&at, &alone).iter().map(job).collect();
     let answers = problem
         .run_built(&jobs, Span::Fit)
         .into_iter()
         .map(|y| y.map(|y| problem.residual(&y, Part::Fit)))
         .collect();
-    let apart = together.apart(&keys, problem, Part::Fit, residual, answers);
+    let apart = blocks.apart(&keys, problem, Part::Fit, residual, answers);
     let column = |((key, r), step): ((&Key, Option<Vec<f64>>), &f64)| {
         let column: Vec<f64> = residual.iter().zip(&r?).map(|(a, b)| (a - b) / step).collect();
         column.iter().all(|v| v.is_finite()).then_some((*key, column))

@@ -157,7 +157,7 @@ impl Solved<'_> {
     }
 
     /// Items with coefficients of unit columns, in true units.
-    fn told(&self, items: &[usize], x: &[f64], predicted: f64) -> Answer {
+    fn answered(&self, items: &[usize], x: &[f64], predicted: f64) -> Answer {
         let mut x = x.iter();
         let new = items.iter().map(|&i| {
             let own = self.metric.at[i].clone();
@@ -172,7 +172,7 @@ impl Solved<'_> {
             let (explained, x) = self.solve(&self.columns_of(&[i]), &|a, b| self.product(a, b))?;
             let answer = self
                 .has_its_sign(i, x[0])
-                .then(|| self.told(&[i], &x, self.value(explained, self.price(i))));
+                .then(|| self.answered(&[i], &x, self.value(explained, self.price(i))));
             Some((explained, i, answer))
         };
         let mut all: Vec<_> = (0..self.items.len()).into_par_iter().filter_map(one).collect();
@@ -265,7 +265,7 @@ impl Solved<'_> {
         };
         let told = |(predicted, i, j): (f64, usize, usize)| {
             let (_, x) = self.solve(&self.columns_of(&[i, j]), &by_z)?;
-            Some(self.told(&[i, j], &x, predicted))
+            Some(self.answered(&[i, j], &x, predicted))
         };
         let distinct = best.into_iter().filter(|&(_, i, j)| seen.insert(names(i, j)));
         distinct.filter_map(told).take(wanted).collect()

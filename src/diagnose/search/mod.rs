@@ -29,8 +29,8 @@ mod moves;
 mod nameless;
 mod neighbours;
 mod run;
+mod selected;
 mod study;
-mod told;
 mod veto;
 
 pub(crate) use run::{Searched, search};

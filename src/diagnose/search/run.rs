@@ -8,8 +8,8 @@ use super::contribution::tangents;
 use super::fits::Wish;
 use super::laws::{Asked, laws_of_places};
 use super::nameless::{left, nameless};
+use super::selected::{ranking, slots};
 use super::study::Study;
-use super::told::{ranking, slots};
 use super::veto::vetoed;
 use crate::candidates::candidate::Wire;
 use crate::candidates::library::Allowed;
@@ -81,7 +81,7 @@ pub(crate) fn search(
     }
     watch.tell(0.95, "checking what was named");
     study.settle(SETTLED.0, SETTLED.1);
-    told(study, screen)
+    concluded(study, screen)
 }
 
 /// The model without causes, parameters held and free.
@@ -195,7 +195,7 @@ fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
 }
 
 /// The headline after the veto, with its look-alikes.
-fn told(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched> {
+fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched> {
     let headline = study.beam.headline().cloned()?;
     let (headline, withdrawn) = vetoed(&mut study, headline);
     let nothing = study.beam.probability(|fit| !fit.free && fit.causes() == 0);

@@ -21,7 +21,7 @@ const OF_SEARCH: f64 = 0.02;
 
 /// Whether records reject a system.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Checked {
+pub struct GoodnessOfFit {
     /// Probability of data as far from the system's simulation if the system were right; `None`
     /// where somebody stopped the check: it has no verdict then.
     pub p_value: Option<f64>,
@@ -33,7 +33,7 @@ pub struct Checked {
     pub interrupted: bool,
 }
 
-impl Checked {
+impl GoodnessOfFit {
     /// Whether a fault changes what was measured, so that no verdict on the model can be had of
     /// these data: a sign, a scale, a reading that stands still or is cut off.
     pub fn rejects_data(&self) -> bool {
@@ -61,14 +61,18 @@ impl Diagnosis<'_> {
     /// # Errors
     ///
     /// As [`run`](Self::run).
-    pub fn check(&self, records: &[Record], watch: &dyn Watch) -> Result<Checked, DiagnoseError> {
+    pub fn check(
+        &self,
+        records: &[Record],
+        watch: &dyn Watch,
+    ) -> Result<GoodnessOfFit, DiagnoseError> {
         let finding = self.run(records, None, watch)?;
         let interrupted = finding.interrupted || watch.stopped();
         let (data_faults, of_the_model): (Vec<Cause>, Vec<Cause>) =
             finding.causes.iter().cloned().partition(is_of_data);
         let first_cause = of_the_model.first().or(data_faults.first()).cloned();
         if interrupted {
-            return Ok(Checked { p_value: None, first_cause, data_faults, interrupted });
+            return Ok(GoodnessOfFit { p_value: None, first_cause, data_faults, interrupted });
         }
         let named = of_the_model.first().and_then(|cause| cause.p_value).unwrap_or(1.0);
         let residual = if unresolved(self.system, records)?.is_some() {
@@ -86,6 +90,6 @@ impl Diagnosis<'_> {
             _ => normal_tail(finding.dependence),
         });
         let p_value = (residual / (1.0 - OF_SEARCH)).min(named / OF_SEARCH).min(1.0);
-        Ok(Checked { p_value: Some(p_value), first_cause, data_faults, interrupted })
+        Ok(GoodnessOfFit { p_value: Some(p_value), first_cause, data_faults, interrupted })
     }
 }

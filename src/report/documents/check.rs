@@ -3,14 +3,14 @@
 use serde_json::{Value, json};
 
 use super::diagnosis::cause_document;
-use crate::diagnose::Checked;
+use crate::diagnose::GoodnessOfFit;
 
 /// A check at a level between 0 and 1: `rejected` is null where somebody stopped it.
 ///
 /// # Errors
 ///
 /// If a cause has no JSON, which only happens to keys that are no text.
-pub fn checked(checked: &Checked, level: f64) -> Result<Value, serde_json::Error> {
+pub fn checked(checked: &GoodnessOfFit, level: f64) -> Result<Value, serde_json::Error> {
     let faults = checked.data_faults.iter().map(cause_document).collect::<Result<Vec<_>, _>>()?;
     let mut document = json!({
         "schema": 1,

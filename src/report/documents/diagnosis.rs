@@ -83,8 +83,8 @@ impl Serialize for Said<'_> {
                 _ => map.serialize_entry(key, value)?,
             }
         }
-        if !finding.alone.is_empty() {
-            let alone = finding.alone.iter();
+        if !finding.single_records.is_empty() {
+            let alone = finding.single_records.iter();
             let alone: Vec<_> =
                 alone.map(|a| SaidAlone { record: &a.record, cause: said(&a.cause) }).collect();
             map.serialize_entry("alone", &alone)?;

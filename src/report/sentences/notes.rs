@@ -10,7 +10,7 @@ pub fn notes(finding: &Finding) -> Vec<String> {
     all.extend(not_confirmed(finding));
     all.extend(finding.regime.iter().map(|(name, found)| regime(name, found)));
     all.extend(finding.closed_loop.as_ref().map(|found| closed_loop(finding, found)));
-    for alone in &finding.alone {
+    for alone in &finding.single_records {
         let records = alone.cause.records.as_deref().unwrap_or_default();
         let only = super::cause::in_records(records, "");
         let bare = crate::diagnose::Cause { records: None, ..alone.cause.clone() };

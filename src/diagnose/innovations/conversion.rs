@@ -81,7 +81,7 @@ pub(super) fn finished(
         nuisance: Nuisance::new(problem, &prepared.nominal),
         precision: Some(precision),
         moved: vec![],
-        moved_together: false,
+        moved_along_ridge: false,
         y,
         // what innovations leave to no place is noise, also where a loop feeds it back
         dependence: 0.0,
