@@ -66,14 +66,14 @@ impl Failure {
     /// A typed error in other words: what to try differs by command.
     pub fn with_hint(error: &dyn Explain, hint: String) -> Self {
         let pretty = format!("{error}\n  try: {hint}");
-        Self { hint: Some(hint), pretty, ..Self::told(error) }
+        Self { hint: Some(hint), pretty, ..Self::explained(error) }
     }
 
-    fn told(error: &dyn Explain) -> Self {
+    fn explained(error: &dyn Explain) -> Self {
         Self {
             kind: error.kind(),
             message: error.to_string(),
-            pretty: lacuna::fault::told(error),
+            pretty: lacuna::fault::render(error),
             place: error.place(),
             hint: error.hint(),
         }
@@ -158,7 +158,7 @@ fn document(kind: Kind, message: &str, place: &Place, hint: Option<&str>) {
 
 impl From<FileError> for Failure {
     fn from(error: FileError) -> Self {
-        Self { pretty: error.pretty(), ..Self::told(&error) }
+        Self { pretty: error.pretty(), ..Self::explained(&error) }
     }
 }
 
@@ -166,7 +166,7 @@ macro_rules! explained {
     ($($error:ty),*) => {$(
         impl From<$error> for Failure {
             fn from(error: $error) -> Self {
-                Self::told(&error)
+                Self::explained(&error)
             }
         }
     )*};

@@ -18,7 +18,7 @@ use lacuna::digits::number;
 use lacuna::evaluate::{Init, Metrics, Simulation};
 use lacuna::file::{Document, save_with, write_text};
 use lacuna::report::documents::{self, Fitted, fitted};
-use lacuna::report::{Shown, TrainingReport};
+use lacuna::report::{Compared, TrainingReport};
 use lacuna::system::System;
 use lacuna::train::{Ablation, Checkpoint, Disguise, Ended, Epoch, Fit, Recipe, ablate, warnings};
 
@@ -145,7 +145,7 @@ impl Done<'_> {
         }
         let baseline: Vec<Vec<f64>> = before.into_iter().map(|(_, values)| values).collect();
         if let (Some(record), Some(run)) = (shown, &run) {
-            report = report.showing(Shown { record, baseline: &baseline, run });
+            report = report.showing(Compared { record, baseline: &baseline, run });
         }
         let page = out.join(PAGE);
         report.write(&page).map_err(|error| cannot_write(&page, &error))?;
@@ -153,11 +153,11 @@ impl Done<'_> {
             (Some(record), Some(run)) => documents::scores(record, self.want, &baseline, run),
             _ => vec![],
         };
-        self.tell(&scores, is_test, look);
+        self.summarise(&scores, is_test, look);
         Ok(0)
     }
 
-    fn tell(&self, scores: &[[Option<Metrics>; 2]], is_test: bool, look: &Console) {
+    fn summarise(&self, scores: &[[Option<Metrics>; 2]], is_test: bool, look: &Console) {
         let (fit, out) = (self.fit, &self.args.out);
         let interrupted = fit.ended == Ended::Asked;
         if interrupted {

@@ -74,6 +74,9 @@ impl<R: LaneNumber> LagState<R> {
 }
 
 /// u(t - d), with the first value held before the start.
+///
+/// Its memory grows with the steps taken, up to its depth: a delay that is longer than the record
+/// takes no more than the record does.
 #[derive(Debug, Clone)]
 pub struct DelayLine<R> {
     /// Values at the starts of past steps, newest last written at `head`.
@@ -87,8 +90,7 @@ pub struct DelayLine<R> {
 impl<R: LaneNumber> DelayLine<R> {
     /// A line that can look `steps` integration steps back.
     pub fn new(packs: usize, steps: usize) -> Self {
-        let depth = steps + 3;
-        Self { ring: vec![R::constant(0.0); packs * depth], packs, depth, head: 0, filled: 0 }
+        Self { ring: vec![], packs, depth: steps.saturating_add(3), head: 0, filled: 0 }
     }
 
     pub fn restart(&mut self) {
@@ -97,8 +99,16 @@ impl<R: LaneNumber> DelayLine<R> {
 
     /// Makes room for one more step; call once before the packs are pushed.
     pub fn turn(&mut self) {
-        self.head = (self.head + 1) % self.depth;
-        self.filled = (self.filled + 1).min(self.depth);
+        if self.filled == self.depth {
+            self.head = (self.head + 1) % self.depth;
+            return;
+        }
+        self.head = self.filled;
+        self.filled += 1;
+        let needed = self.filled * self.packs;
+        if self.ring.len() < needed {
+            self.ring.resize(needed, R::constant(0.0));
+        }
     }
 
     /// Stores a pack's value at the start of the step and reads the three delayed values.
@@ -149,7 +159,9 @@ impl<R: LaneNumber> DelayLine<R> {
     /// The value `steps` starts ago, the oldest known one before the start.
     fn past(&self, pack: usize, lane: usize, steps: usize) -> f64 {
         let steps = steps.min(self.filled.saturating_sub(1)).min(self.depth - 1);
-        let slot = (self.head + self.depth - steps) % self.depth;
+        // while it is being filled, nothing wraps around
+        let slot =
+            if steps <= self.head { self.head - steps } else { self.head + self.depth - steps };
         self.ring[slot * self.packs + pack].lane(lane)
     }
 }

@@ -10,11 +10,11 @@ use crate::system::{Placed, System};
 
 /// Response of the outputs, over their spread, to a change of a parameter by a tenth of its value
 /// below which the record does not show the parameter at all.
-const UNSEEN: f64 = 1e-10;
+const INSENSITIVE: f64 = 1e-10;
 
 impl Fit<'_> {
     /// What came out, with intervals.
-    pub(super) fn told(&self, done: &Levenberg, before: f64) -> Result<Estimate, EvaluateError> {
+    pub(super) fn outcome(&self, done: &Levenberg, before: f64) -> Result<Estimate, EvaluateError> {
         let count = done.residuals.len().max(1) as f64;
         let scaled: Vec<Vec<f64>> = done
             .columns
@@ -37,7 +37,7 @@ impl Fit<'_> {
             let error = covariance.as_ref().map(|c| c[(i, i)].sqrt() * u.scale);
             // a change as large as the value that moves nothing leaves nothing to know it by
             let size = crate::statistics::rms(&scaled[i]);
-            let error = error.filter(|e| *e > 0.0 && size > UNSEEN);
+            let error = error.filter(|e| *e > 0.0 && size > INSENSITIVE);
             let error =
                 error.filter(|e| e.is_finite() && *e < 1e3 * value.abs().max(u.scale) && !at_bound);
             parameters.push(Estimated {
