@@ -83,12 +83,18 @@ impl Failure {
     /// knows its own key, not the file that it was read from. `other` is what a key is called
     /// there.
     pub fn in_file(mut self, path: &Path, document: &Document, other: [&str; 2]) -> Self {
-        if self.kind != Kind::Input || self.place.file.is_some() {
+        if self.kind == Kind::Work || self.place.file.is_some() {
             return self;
         }
         let key = self.place.key.as_ref().map(|key| key.replacen(other[0], other[1], 1));
         let lead = self.place.lead();
         let found = key.as_deref().and_then(|key| document.spot_ending(key));
+        // a wrong argument of the library is a wrong setting of the file that it was read from
+        match found {
+            Some(_) => self.kind = Kind::Input,
+            None if self.kind == Kind::Call => return self,
+            None => {}
+        }
         let place = found.map_or_else(
             || Place { file: Some(path.display().to_string()), ..self.place.clone() },
             |spot| spot.place,

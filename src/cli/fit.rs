@@ -37,6 +37,8 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     outputs::distinct(&args.on.data, &apart)?;
     let document = Document::load(&args.config)?;
     let mut recipe: Recipe = document.read()?;
+    let located = |error| Failure::from(error).in_file(&args.config, &document, [""; 2]);
+    recipe.training.check().map_err(located)?;
     let checkpoint = recipe
         .training
         .checkpoint
@@ -70,7 +72,6 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let available = || std::thread::available_parallelism().map_or(1, usize::from);
     recipe.training.threads = threads.unwrap_or_else(available);
     look.hear_interrupts()?;
-    let located = |error| Failure::from(error).in_file(&args.config, &document, [""; 2]);
     let begun = recipe.start(&system, &records, recipe.training.seed);
     let (start, started) = begun.map_err(located)?;
     // what cannot be saved is better known before the work than after it
@@ -82,8 +83,9 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let lengths = recipe.training.validation.lengths.clone();
     let page = Following::of(args.out.join(PAGE), &want.outputs, &lengths);
     let mut progress = Progress::of(look, recipe.training.all_epochs(), page);
-    let mut fit = recipe.training.fit(&start, &records, &validation, &mut progress)?;
+    let fit = recipe.training.fit(&start, &records, &validation, &mut progress);
     look.clear();
+    let mut fit = fit.map_err(located)?;
     let mut parts = vec![];
     if fit.ended != Ended::Asked {
         parts = ablate(&mut fit, &validation, recipe.training.sparse.prune)?;

@@ -206,3 +206,45 @@ impl<R: LaneNumber> PlayState<R> {
         value
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::real::{F64x8, Real};
+
+    /// Outputs of a line of a delay along 0, 1, 2, .., from the start of two segments.
+    fn along(delay: f64, steps: usize) -> (Vec<f64>, usize) {
+        let mut line = DelayLine::<F64x8>::new(1, delay.ceil() as usize);
+        let mut answers = vec![];
+        for _ in 0..2 {
+            line.restart();
+            for k in 0..steps {
+                line.turn();
+                let of = |value: f64| F64x8::constant(value);
+                answers.push(line.advance(0, of(delay), 1.0, [of(k as f64); 3], true)[0].lane(3));
+            }
+        }
+        (answers, line.ring.len())
+    }
+
+    #[test]
+    fn a_delay_of_steps_gives_the_past() {
+        for delay in [1.0, 2.0, 7.0] {
+            let (answers, _) = along(delay, 30);
+            let expected = (0..2).flat_map(|_| (0..30).map(|k| (f64::from(k) - delay).max(0.0)));
+            assert_eq!(answers, expected.collect::<Vec<_>>(), "{delay}");
+        }
+        // half a step more: the mean of two values
+        let (answers, _) = along(2.5, 30);
+        assert_eq!((answers[20], answers[50]), (17.5, 17.5));
+    }
+
+    #[test]
+    fn a_delay_longer_than_the_record_takes_no_more_room_than_the_record() {
+        let (answers, room) = along(1e15, 100);
+        assert!(answers.iter().all(|y| *y == 0.0));
+        assert_eq!(room, 100);
+        // and a short one no more than it needs
+        assert!(along(2.0, 100).1 <= 5);
+    }
+}

@@ -95,14 +95,18 @@ impl State {
 
     /// Reads a checkpoint of a run with `len` parameters, if there is one.
     pub fn read(path: &Path, fingerprint: u64, len: usize) -> Result<Option<Self>, TrainError> {
-        let fault = |reason: String| TrainError::File { path: path.display().to_string(), reason };
+        let unread = |reason: String, at| {
+            let path = path.display().to_string();
+            TrainError::File { path, reason, at }
+        };
+        let fault = |reason: String| unread(reason, None);
         let text = match read_regular(path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(fault(error.to_string())),
         };
-        let state: Self =
-            serde_json::from_slice(&text).map_err(|error| fault(error.to_string()))?;
+        let state: Self = serde_json::from_slice(&text)
+            .map_err(|error| unread(error.to_string(), Some((error.line(), error.column()))))?;
         if let Some(reason) = state.fault(len) {
             return Err(fault(reason));
         }

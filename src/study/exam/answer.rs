@@ -198,9 +198,9 @@ impl Answers {
             let text = read_regular(&file).map_err(|e| StudyError::merge(&file, e))?;
             let reader = &mut serde_json::Deserializer::from_slice(&text);
             let read: Result<Self, _> = serde_path_to_error::deserialize(&mut *reader);
-            let answers = read
-                .map_err(|e| StudyError::merge(&file, format!("`{}`: {}", e.path(), e.inner())))?;
-            reader.end().map_err(|e| StudyError::merge(&file, e))?;
+            let answers =
+                read.map_err(|e| StudyError::unread(&file, Some(e.path().to_string()), e.inner()))?;
+            reader.end().map_err(|e| StudyError::unread(&file, None, &e))?;
             if answers.schema != SCHEMA {
                 let reason = format!("`schema` is {}, and {SCHEMA} is read", answers.schema);
                 return Err(StudyError::merge(&file, reason));

@@ -13,7 +13,7 @@ use crate::file::{load, read_regular};
 /// Reads a JSON file.
 fn read<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, StudyError> {
     let text = read_regular(path).map_err(|error| StudyError::merge(path, error))?;
-    serde_json::from_slice(&text).map_err(|error| StudyError::merge(path, error))
+    serde_json::from_slice(&text).map_err(|error| StudyError::unread(path, None, &error))
 }
 
 impl Written {

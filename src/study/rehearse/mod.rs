@@ -180,7 +180,7 @@ impl<'a> Rehearsal<'a> {
         let path = path_of(folder, number);
         let Ok(text) = std::fs::read_to_string(&path) else { return Ok(None) };
         let outcome: Outcome =
-            serde_json::from_str(&text).map_err(|error| StudyError::merge(&path, error))?;
+            serde_json::from_str(&text).map_err(|error| StudyError::unread(&path, None, &error))?;
         if outcome.fingerprint != self.fingerprint {
             return Err(StudyError::merge(&path, "a rehearsal of another record, model or seed"));
         }
