@@ -256,14 +256,14 @@ fn what_is_wrong_with_a_file_is_named_with_its_place() {
     // a checkpoint
     place.put(
         "generate.toml",
-        "model = \"model.toml\"\nsamples = { est = 300, test = 100 }\n\
+        "model = \"model.toml\"\nsamples = { est = 300, test = 300 }\n\
         snr_db = 30.0\nexcitation.filtered_noise = { cutoff = 2.0, order = 2, rms = 20.0 }\n",
     );
     place.done("generate --config generate.toml --out data");
     place.put(
         "fit.toml",
         "[encoder.linear]\nn_a = 5\nn_b = 5\n[initialiser.least_squares]\n[training]\n\
-        length = 30\nepochs = 1\ncheckpoint = { path = \"there.json\" }\n",
+        length = 30\nepochs = 1\nvalidation = { lengths = [5] }\ncheckpoint = { path = \"there.json\" }\n",
     );
     place.put("there.json", "{\"fingerprint\": 1,\n\"epoch\": \"two\"}");
     let fit = "fit --model model.toml --data data/est.csv --validate data/test.csv --config fit.toml --out out";

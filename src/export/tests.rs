@@ -152,6 +152,24 @@ fn python_and_matlab_are_the_simulation() {
 }
 
 #[test]
+fn a_delay_that_no_program_can_hold_is_refused() {
+    let folder = folder("long_delay");
+    let file = folder.join("of.toml");
+    let of = |delay: &str| {
+        let effect = format!(
+            "[[effects]]\ninto = \"u\"\nof = \"u\"\neffect.delay = {{ delay = {delay} }}\n"
+        );
+        std::fs::write(&file, format!("{}{effect}", header(DUFFING))).unwrap();
+        export(&load(&file).unwrap(), Target::Python, "spring", &folder)
+    };
+    assert!(of("0.034").is_ok());
+    let error = of("1e9").unwrap_err();
+    let place = crate::fault::Explain::place(&error);
+    assert_eq!(place.key.as_deref(), Some("effects[0].effect.delay.delay"), "{error}");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+#[test]
 fn a_name_that_no_function_can_have_is_refused() {
     let folder = folder("name");
     let file = folder.join("of.toml");
