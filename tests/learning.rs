@@ -3,6 +3,7 @@
 //! Apart from the library, because its tests register models of their own.
 
 mod encoder;
+mod hidden_mode;
 mod learned_part;
 mod learned_part_read;
 mod paper_msd;

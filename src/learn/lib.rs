@@ -7,4 +7,7 @@ pub mod lfr;
 pub mod network;
 pub mod train;
 
-use lacuna_core::{data, disk, effect, fault, model, optimise, per_lanes, real, register, system};
+use lacuna_core::{
+    data, disk, effect, fault, model, optimise, per_lanes, real, register, statistics, system,
+};
+use lacuna_estimate as estimate;

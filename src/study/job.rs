@@ -85,6 +85,7 @@ impl MonteCarlo {
         let own = job.seed.wrapping_add(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15));
         let recipe = Recipe {
             structure: self.recipe.structure.clone(),
+            augmented_start: self.recipe.augmented_start,
             encoder: self.recipe.encoder.clone(),
             initialiser: copied(self, job)?,
             free: self.recipe.free.clone(),

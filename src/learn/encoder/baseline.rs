@@ -5,7 +5,9 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Encoder, EncoderError, Scaling, Shape, Spread, StateError, Window};
+use super::{
+    About, Encoder, EncoderError, SampledLinear, Scaling, Shape, Spread, StateError, Window,
+};
 use crate::data::{Record, Signal};
 use crate::model::Signals;
 use crate::system::{Drive, Lane, Origin, Plan, System};
@@ -199,6 +201,31 @@ impl<'a> Baseline<'a> {
         named.collect()
     }
 
+    /// The inputs along the record, and the samples that belong together.
+    pub(crate) fn drives(&self) -> (&[Vec<f64>], &[Range<usize>]) {
+        (&self.drive.inputs, &self.drive.segments)
+    }
+
+    /// The outputs as they were measured, where all of them were.
+    pub(crate) fn seen(&self) -> Option<Vec<&[f64]>> {
+        self.measured.iter().copied().collect()
+    }
+
+    /// The baseline, sampled and linear about a point; sizes of states and inputs as differences
+    /// need them.
+    pub(crate) fn linear(
+        &self,
+        about: &About,
+        scales: &[f64],
+    ) -> Result<SampledLinear, EncoderError> {
+        Ok(SampledLinear::of_plan(self.system, &self.plan, about, scales)?.system)
+    }
+
+    /// Whether its simulation is that of a plant in its loop.
+    pub(crate) fn is_looped(&self) -> bool {
+        self.driven.is_some()
+    }
+
     /// Whether all outputs were measured.
     pub(crate) fn is_measured(&self) -> bool {
         self.measured.iter().all(Option::is_some)
@@ -218,12 +245,47 @@ impl<'a> Baseline<'a> {
                 self.measured()?
             }
         };
+        self.gathered(window, &segments, &y, of, x)
+    }
+
+    /// The same for other series in the place of the states, by what was measured (simulated,
+    /// where nothing was); samples at which one of them is not a number are left out.
+    pub(crate) fn examples_of(
+        &self,
+        window: Window,
+        series: &[Vec<f64>],
+    ) -> Result<Examples, EncoderError> {
+        let of = if self.is_measured() { Outputs::Measured } else { Outputs::Simulated };
+        let y: Vec<&[f64]> = match of {
+            Outputs::Measured => self.measured()?,
+            Outputs::Simulated => self.simulate()?.outputs.iter().map(|y| &y[..]).collect(),
+        };
+        let mut parts = vec![];
+        for segment in &self.drive.segments {
+            let known = |k: &usize| series.iter().all(|s| s.get(*k).is_some_and(|v| v.is_finite()));
+            // windows may look back at samples without a number, states may not be such
+            let first = segment.clone().find(known).unwrap_or(segment.end);
+            let reach = window.reach().min(first - segment.start);
+            parts.push(first - reach..segment.end);
+        }
+        self.gathered(window, &parts, &y, of, series)
+    }
+
+    /// Windows within segments, and series at them.
+    fn gathered(
+        &self,
+        window: Window,
+        segments: &[Range<usize>],
+        y: &[&[f64]],
+        of: Outputs,
+        x: &[Vec<f64>],
+    ) -> Result<Examples, EncoderError> {
         let inputs = match (&self.driven, of) {
             (Some(driven), Outputs::Simulated) => driven,
             _ => &self.drive.inputs,
         };
         let u: Vec<&[f64]> = inputs.iter().map(|u| &u[..]).collect();
-        let ks = window.starts(&segments, &y, 1);
+        let ks = window.starts(segments, y, 1);
         let needed = 2 * self.plan.sizes.x.max(1);
         if ks.len() < needed {
             let (windows, reach) = (ks.len(), window.reach());
@@ -231,7 +293,7 @@ impl<'a> Baseline<'a> {
             return Err(EncoderError::TooShort { record, windows, reach, needed });
         }
         let states = x.iter().flat_map(|x| ks.iter().map(|&k| x[k])).collect();
-        Ok(Examples { windows: window.gather(&y, &u, &ks), states, samples: ks.len() })
+        Ok(Examples { windows: window.gather(y, &u, &ks), states, samples: ks.len() })
     }
 
     /// Samples of a segment until a change of its first state has faded from the outputs, at

@@ -115,18 +115,20 @@ impl Learned {
         Ok(Batch::new(self.network.layout(), self.scaling.frame(window), windows, samples))
     }
 
-    /// The linear part becomes the map, for its rows; the output layer's weights of these
-    /// states 0, so that hidden layers have no say at first.
+    /// The linear part becomes the map, for its rows, which are the states from `first` on; the
+    /// output layer's weights of these states 0, so that hidden layers have no say at first.
     pub(crate) fn set_linear(
         &mut self,
         window: Window,
+        first: usize,
         map: &LinearMap,
     ) -> Result<(), EncoderError> {
         let (inputs, states) = (self.network.layout().inputs(), map.bias.len());
+        let room = self.shape.states().saturating_sub(first);
         let counts = [
             ("columns of the linear map", inputs, map.weights.ncols()),
             ("rows of the linear map", states, map.weights.nrows()),
-            ("rows of the linear map", states.min(self.shape.states()), states),
+            ("rows of the linear map", states.min(room), states),
         ];
         for (what, expected, found) in counts {
             if expected != found {
@@ -140,15 +142,15 @@ impl Learned {
         let (linear, output) = (layout.linear().start, layout.output().start);
         let bias = layout.output_bias().start;
         for i in 0..states {
-            let to = self.scaling.states[i];
+            let (row, to) = (first + i, self.scaling.states[first + i]);
             let mut constant = map.bias[i] - to.offset;
             for (j, from) in rows.iter().enumerate() {
                 let weight = map.weights[(i, j)];
                 constant += weight * from.offset;
-                weights[linear + i * inputs + j] = weight * from.scale / to.scale;
+                weights[linear + row * inputs + j] = weight * from.scale / to.scale;
             }
-            weights[bias + i] = constant / to.scale;
-            weights[output + i * units..][..units].fill(0.0);
+            weights[bias + row] = constant / to.scale;
+            weights[output + row * units..][..units].fill(0.0);
         }
         Ok(())
     }
@@ -191,7 +193,16 @@ macro_rules! by_what_is_learned {
 
         fn set_linear(&mut self, map: &$crate::encoder::LinearMap) -> Result<(), EncoderError> {
             let window = self.window();
-            self.learned.as_mut().ok_or(EncoderError::NotReady)?.set_linear(window, map)
+            self.learned.as_mut().ok_or(EncoderError::NotReady)?.set_linear(window, 0, map)
+        }
+
+        fn set_linear_from(
+            &mut self,
+            first: usize,
+            map: &$crate::encoder::LinearMap,
+        ) -> Result<(), EncoderError> {
+            let window = self.window();
+            self.learned.as_mut().ok_or(EncoderError::NotReady)?.set_linear(window, first, map)
         }
 
         fn network(&self) -> Option<&$crate::network::ResNet> {

@@ -160,6 +160,21 @@ pub trait Encoder: std::fmt::Debug + Send + Sync {
     /// If there is no linear part or the map has another width.
     fn set_linear(&mut self, map: &LinearMap) -> Result<(), EncoderError> {
         let _ = map;
+        self.without_linear_part()
+    }
+
+    /// The same for the states from number `first` on; what it says about others stays.
+    ///
+    /// # Errors
+    ///
+    /// As [`Encoder::set_linear`].
+    fn set_linear_from(&mut self, first: usize, map: &LinearMap) -> Result<(), EncoderError> {
+        if first == 0 { self.set_linear(map) } else { self.without_linear_part() }
+    }
+
+    /// The refusal of an encoder that has no linear part.
+    #[doc(hidden)]
+    fn without_linear_part(&self) -> Result<(), EncoderError> {
         let encoder = self.typetag_name().to_string();
         Err(EncoderError::NoLinearPart { initialiser: "set_linear", encoder })
     }

@@ -18,7 +18,11 @@ mod error;
 mod fit;
 mod groups;
 mod guess;
+mod hidden;
+mod left_over;
 mod looped;
+mod modes;
+mod mover;
 mod orthogonal;
 mod recipe;
 mod run;
@@ -28,6 +32,7 @@ mod settings;
 mod shooting;
 mod sparse;
 mod steps;
+mod tangent;
 mod trainer;
 mod validate;
 mod whole;
@@ -55,6 +60,7 @@ pub use self::{
     fit::Epoch,
     fit::{Ended, Follow},
     groups::{Group, GroupKind},
+    recipe::AugmentedStart,
     settings::{Finish, Growing, Mask, Weights},
     shooting::{Arithmetic, Shooting},
     validate::Validation,

@@ -10,6 +10,7 @@ use crate::encoder::{
 use crate::lfr::{Baseline, ClosedLoop, Sampled, Scales, Structure};
 use crate::system::System;
 
+use super::hidden::start_from_data;
 use super::looped::Looped;
 use super::{Augmented, TrainError, Trainer};
 
@@ -35,6 +36,8 @@ use super::{Augmented, TrainError, Trainer};
 pub struct Recipe {
     /// Where the learned part stands, and its size.
     pub structure: Structure,
+    /// What augmented states are before training.
+    pub augmented_start: AugmentedStart,
     /// What estimates the first state of every section.
     pub encoder: Box<dyn Encoder>,
     /// The encoder's first weights.
@@ -45,10 +48,22 @@ pub struct Recipe {
     pub training: Trainer,
 }
 
+/// What augmented states are before training. In neither case does the baseline feel them yet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum AugmentedStart {
+    /// The modes that the longest record shows beside the baseline, as far as it shows some.
+    #[default]
+    Data,
+    /// At rest: a saddle, from which the first steps do not know where to go.
+    Zero,
+}
+
 impl Default for Recipe {
     fn default() -> Self {
         Self {
             structure: Structure::default(),
+            augmented_start: AugmentedStart::default(),
             encoder: Box::new(ResNetEncoder::new(Window::past(9), &[16, 16])),
             initialiser: Box::new(Linearised::default()),
             free: vec![],
@@ -99,7 +114,7 @@ impl Recipe {
         };
         let known = known.augmented(augmented_states);
         let mut encoder = self.encoder.clone();
-        let started = self.initialiser.initialise(encoder.as_mut(), &known, seed)?;
+        let mut started = self.initialiser.initialise(encoder.as_mut(), &known, seed)?;
         let scaling = known.scaling()?;
         let pairs = |spreads: &[Spread]| spreads.iter().map(|s| (s.offset, s.scale)).collect();
         let states = known.shape().baseline_states;
@@ -114,7 +129,10 @@ impl Recipe {
             free: self.free(system)?,
             theta: None,
         };
-        let model = self.structure.build(baseline, &scales, seed)?;
+        let mut model = self.structure.build(baseline, &scales, seed)?;
+        if augmented_states > 0 && self.augmented_start == AugmentedStart::Data {
+            started.notes.extend(start_from_data(&mut model, encoder.as_mut(), &known)?);
+        }
         let start = Augmented::new(model, encoder)?;
         Ok((if let Some(closed) = closed { start.in_loop(closed)? } else { start }, started))
     }

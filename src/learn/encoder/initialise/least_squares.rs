@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{EncoderInitialiser, Found, as_it_is, set_linear, started};
 use crate::encoder::baseline::Examples;
-use crate::encoder::{Baseline, Encoder, EncoderError, LinearMap, Outputs, Started};
+use crate::encoder::{Baseline, Encoder, EncoderError, LinearMap, Outputs, Started, Window};
 
 /// min ||Phi W' - X||: windows along the record against the baseline's states there.
 ///
@@ -70,6 +70,17 @@ pub(super) fn solve(examples: &Examples) -> Solved {
     }
     let condition = (largest / smallest).sqrt();
     Solved { map: LinearMap { weights, bias }, rank: kept.len(), condition }
+}
+
+impl Baseline<'_> {
+    /// The best linear map from windows of what was measured to other series, sample by sample.
+    pub(crate) fn map_to(
+        &self,
+        window: Window,
+        series: &[Vec<f64>],
+    ) -> Result<LinearMap, EncoderError> {
+        Ok(solve(&self.examples_of(window, series)?).map)
+    }
 }
 
 /// Mean products of all pairs of rows, stretch by stretch so that all rows of one are near.

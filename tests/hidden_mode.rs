@@ -1,0 +1,108 @@
+//! Augmented states that start from data: a hidden mode is found without a band given by hand.
+
+use lacuna::data::Record;
+use lacuna::encoder::{About, SampledLinear};
+use lacuna::evaluate::{Init, Simulation};
+use lacuna::lfr::Sampled;
+use lacuna::system::{Sampling, System};
+use lacuna::train::{Augmented, Fit, Recipe};
+
+use super::learned_part::{noisy, system};
+
+const PLANT: &str = "sampling_time = 0.05\n[model.duffing]\nmass = 1.0\ndamping = 2.0\n\
+    stiffness = 40.0\nhardening = 60.0\n";
+/// A tuned absorber: an oscillator hung on the mass.
+const ABSORBER: &str = "[[effects]]\ninto = \"force\"\nof = \"p\"\n\
+    effect.extra_mode = { frequency = 9.0, damping = 0.04, participation = 0.25 }\n";
+
+fn records(seed: u64) -> [Record; 2] {
+    let truth = system(&format!("{PLANT}{ABSORBER}"));
+    [noisy(&truth, 900, 10 + seed, 1e-3), noisy(&truth, 500, 50 + seed, 1e-3)]
+}
+
+fn recipe(start: &str, seed: u64) -> Recipe {
+    let text = format!(
+        "augmented_start = \"{start}\"\n\
+         structure = {{ hidden = [6], augmented_states = 2 }}\n\
+         encoder.linear = {{ n_a = 8, n_b = 8 }}\n\
+         [training]\nlength = 60\nbatch = 200\nepochs = 12\nseed = {seed}\n\
+         optimiser = {{ rate = 5e-3 }}\n\
+         validation = {{ lengths = [5, 60], sections = 200 }}\n"
+    );
+    toml::from_str(&text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+fn begun(start: &str, seed: u64, records: &[Record]) -> (Augmented, Vec<String>) {
+    let (model, started) = recipe(start, seed).start(&system(PLANT), &records[..1], seed).unwrap();
+    (model, started.notes)
+}
+
+/// Frequency of the mode that the added states start as.
+fn hertz(notes: &[String]) -> f64 {
+    let said = notes.iter().find(|note| note.starts_with("xa1 and xa2 start as a mode of"));
+    said.unwrap_or_else(|| panic!("{notes:?}")).split(' ').nth(8).unwrap().parse().unwrap()
+}
+
+#[test]
+fn the_mode_beside_a_linear_baseline_is_one_of_the_machine() {
+    let linear = PLANT.replace("60.0", "0.0");
+    let truth = system(&format!("{linear}{ABSORBER}"));
+    let record = noisy(&truth, 900, 3, 1e-3);
+    let (_, started) =
+        recipe("data", 1).start(&system(&linear), std::slice::from_ref(&record), 1).unwrap();
+    let step = Sampling { sampling_time: Some(0.05), ..Sampling::default() };
+    let sampled = System::new(Sampled::of(&truth, 0.05).unwrap(), step);
+    let exact = SampledLinear::about(&sampled, 0.05, &About::default(), &[1.0; 5]).unwrap();
+    let poles = exact.a.complex_eigenvalues();
+    let modes = poles.iter().filter(|p| p.im > 0.0);
+    let of_machine: Vec<f64> = modes
+        .map(|p| {
+            let (decay, turn) = (p.norm().ln() / 0.05, p.im.atan2(p.re) / 0.05);
+            decay.hypot(turn) / std::f64::consts::TAU
+        })
+        .collect();
+    let found = hertz(&started.notes);
+    let near = of_machine.iter().any(|own| (own / found - 1.0).abs() < 0.05);
+    assert!(of_machine.len() == 2 && near, "{found} of {of_machine:?}");
+}
+
+#[test]
+fn a_start_from_data_is_the_baseline_until_it_is_trained() {
+    let records = records(1);
+    let (data, notes) = begun("data", 1, &records);
+    let (zero, _) = begun("zero", 1, &records);
+    assert!(hertz(&notes).is_finite(), "{notes:?}");
+    let run = |model: &Augmented| model.simulate(&records[1]).unwrap().outputs.swap_remove(0);
+    let (with, without) = (run(&data), run(&zero));
+    let bits = |y: &[f64]| y.iter().map(|v| v.to_bits()).collect::<Vec<u64>>();
+    assert_eq!(bits(&with), bits(&without));
+    let alone = Simulation::of(&system(PLANT), &records[1], Init::Samples(0)).unwrap();
+    for (k, (own, other)) in with.iter().zip(&alone.outputs[0].1).enumerate().skip(300) {
+        assert!((own - other).abs() < 1e-6, "{k}: {own} {other}");
+    }
+    // the added states move, and the encoder knows them: they do not at rest
+    assert_ne!(data.parameters(), zero.parameters());
+}
+
+#[test]
+fn a_hidden_mode_is_learned_better_from_data_than_from_rest() {
+    let error = |fit: &Fit| {
+        let best = fit.history[fit.epoch].score.as_ref().unwrap();
+        best.simulation[0] / fit.history[0].score.as_ref().unwrap().simulation[0]
+    };
+    let mut ratios = vec![];
+    for seed in 1..=4 {
+        let records = records(seed);
+        let fit = |start: &str| {
+            let (model, _) = begun(start, seed, &records);
+            let trainer = recipe(start, seed).training;
+            error(&trainer.fit(&model, &records[..1], &records[1..], &mut ()).unwrap())
+        };
+        let (data, zero) = (fit("data"), fit("zero"));
+        println!("seed {seed}: from data {data:.3}, from rest {zero:.3}");
+        assert!(data < zero, "seed {seed}: {data} {zero}");
+        ratios.push(data / zero);
+    }
+    ratios.sort_by(f64::total_cmp);
+    assert!(ratios[2] < 0.7, "{ratios:?}");
+}
