@@ -9,7 +9,7 @@ use lacuna::file::{Document, Format, to_toml_with};
 use lacuna::report::documents::{Fitted, fitted, scores};
 use lacuna::report::{Compared, ReadBack, TrainingReport};
 use lacuna::system::System;
-use lacuna::train::{Ended, Epoch, Follow, Recipe, ablate, warnings};
+use lacuna::train::{Ended, Epoch, Follow, Recipe, warnings};
 use lacuna::watch::Watch;
 use pyo3::prelude::*;
 
@@ -117,7 +117,7 @@ fn trained(
     let mut fit = training.fit(&start, &data.train, &data.validation, &mut follow)?;
     let mut parts = vec![];
     if fit.ended != Ended::Asked {
-        parts = ablate(&mut fit, &data.validation, training.sparse.prune)?;
+        parts = training.prune(&mut fit, &data.train, &data.validation, &mut follow)?;
     }
     let outputs = want(system)?.outputs;
     let model = fit.model.system()?;

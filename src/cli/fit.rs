@@ -20,7 +20,7 @@ use lacuna::file::{Document, save_with, write_text};
 use lacuna::report::documents::{self, Fitted, fitted};
 use lacuna::report::{Compared, TrainingReport};
 use lacuna::system::System;
-use lacuna::train::{Ablation, Checkpoint, Disguise, Ended, Epoch, Fit, Recipe, ablate, warnings};
+use lacuna::train::{Ablation, Checkpoint, Disguise, Ended, Epoch, Fit, Recipe, warnings};
 
 use lacuna::report::ReadBack;
 use progress::{Following, Progress};
@@ -84,12 +84,15 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let page = Following::of(args.out.join(PAGE), &want.outputs, &lengths);
     let mut progress = Progress::of(look, recipe.training.all_epochs(), page);
     let fit = recipe.training.fit(&start, &records, &validation, &mut progress);
-    look.clear();
-    let mut fit = fit.map_err(located)?;
+    let mut fit = fit.map_err(|error| {
+        look.clear();
+        located(error)
+    })?;
     let mut parts = vec![];
     if fit.ended != Ended::Asked {
-        parts = ablate(&mut fit, &validation, recipe.training.sparse.prune)?;
+        parts = recipe.training.prune(&mut fit, &records, &validation, &mut progress)?;
     }
+    look.clear();
     let (fit, want) = (&fit, &want.outputs[..]);
     // what was learned is asked for its name where it was learned
     let read = records.first().map_or(Ok(vec![]), |record| ReadBack::of(&fit.model, record))?;

@@ -5,12 +5,9 @@ use crate::optimise::{AdamState, Named};
 
 use super::batch::{batches, shuffled};
 use super::checkpoint::State;
-use super::counted::counted;
 use super::fit::{Ended, Epoch, Fit, Follow};
-use super::orthogonal::Orthogonal;
 use super::scale::Units;
-use super::settings::Weights;
-use super::shooting::Shooting;
+use super::task::Task;
 use super::validate::Scorer;
 use super::whole::leg;
 use super::{Augmented, MultipleShooting, TrainError, Trainer};
@@ -44,24 +41,7 @@ impl<'a> Steps<'a> {
         validation: &'a [Record],
         fingerprint: u64,
     ) -> Result<Self, TrainError> {
-        let by = &trainer.weights;
-        let counts = match *by == Weights::default() {
-            true => None,
-            false => Some(counted(by, start, training)?),
-        };
-        let deviations = deviations(start, training, counts.as_deref())?;
-        let variances: Vec<f64> = deviations.iter().map(|d| d * d).collect();
-        let Trainer { length, threads, arithmetic, .. } = *trainer;
-        let shooting = Shooting { length, threads, arithmetic };
-        let mut loss = MultipleShooting::new(start, training, shooting, &variances)?;
-        if let Some(counts) = counts {
-            loss.count_by(counts);
-        }
-        if let (true, Some(record)) = (trainer.disguise > 0.0, training.first())
-            && let Some(penalty) = Orthogonal::new(start, record, trainer.disguise)?
-        {
-            loss.penalise(penalty);
-        }
+        let Task { loss, deviations, shooting } = Task::of(trainer, start, training)?;
         let scorer = match validation {
             [] => None,
             records => Some(Scorer::new(start, records, &trainer.validation, shooting)?),
@@ -236,7 +216,7 @@ impl<'a> Steps<'a> {
             self.state.best = Some((whole, self.state.theta.clone(), epoch));
         }
         let rate = self.trainer.optimiser.batch_rate(&self.state.adam);
-        if self.trainer.sparse.s > 0.0
+        if self.trainer.sparse.draws()
             && epoch > 0
             && epoch.is_multiple_of(self.trainer.sparse.reweight)
         {
@@ -285,25 +265,4 @@ impl<'a> Steps<'a> {
         let (history, rollbacks) = (state.history, state.rollbacks);
         Ok(Fit { model, epoch, history, ended, rollbacks, resumed })
     }
-}
-
-/// Standard deviation of each output over all records, without what does not count; 1 where that
-/// is 0.
-fn deviations(
-    model: &Augmented,
-    records: &[Record],
-    counts: Option<&[Vec<f64>]>,
-) -> Result<Vec<f64>, TrainError> {
-    let mut values = vec![vec![]; model.model.outputs];
-    for (i, record) in records.iter().enumerate() {
-        for (all, own) in values.iter_mut().zip(model.series(record, i + 1)?.y) {
-            all.extend_from_slice(own);
-        }
-    }
-    for (values, counts) in values.iter_mut().zip(counts.unwrap_or_default()) {
-        let masked = values.iter_mut().zip(counts).filter(|(_, count)| **count == 0.0);
-        masked.for_each(|(value, _)| *value = f64::NAN);
-    }
-    let deviation = |values: &Vec<f64>| crate::encoder::Spread::of(values).scale;
-    Ok(values.iter().map(deviation).collect())
 }
