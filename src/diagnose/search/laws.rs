@@ -12,7 +12,6 @@ use std::sync::Arc;
 use super::beam::Fit;
 use super::chain::race;
 use super::fits::Wish;
-use super::nameless::left;
 use super::study::Study;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::coordinate::along;
@@ -37,7 +36,7 @@ pub(super) type Asked = BTreeSet<(Vec<String>, Vec<String>)>;
 pub(super) fn laws_of_places(study: &mut Study<'_, '_>, free: bool, asked: &mut Asked) -> bool {
     let Some(best) = study.beam.best_of(free).cloned() else { return false };
     let known = best.model.known();
-    let inadequate = left(study, &best.model) > DEPENDS;
+    let inadequate = study.dependence(&best.model) > DEPENDS;
     let mut any = false;
     for own in best.model.places().into_iter().filter(|own| own[0] >= known) {
         let is_law = |&i: &usize| {

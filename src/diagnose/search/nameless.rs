@@ -14,8 +14,8 @@ use crate::candidates::free_surface;
 use crate::candidates::library::{Allowed, library};
 use crate::candidates::network_start::start;
 use crate::findings::formula::read;
-use crate::fit::problem::{Grain, Model};
-use crate::prepare::input_dependence::{DEPENDS, dependence};
+use crate::fit::problem::Grain;
+use crate::prepare::input_dependence::DEPENDS;
 use crate::statistics::whiteness;
 
 /// Curves that are fitted, and their sizes as shares of what is foretold.
@@ -46,7 +46,7 @@ pub(super) fn nameless(study: &mut Study<'_, '_>) {
         let n = (left.len() / study.problem.y.len().max(1)).max(1);
         best.noise.is_coloured()
             || left.chunks(n).any(|r| whiteness(r) > COLOURED)
-            || self::left(study, &best.model) > DEPENDS
+            || study.dependence(&best.model) > DEPENDS
     };
     if curve || hidden(study, &best) {
         study.watch.tell(0.9, "drawing free curves");
@@ -61,12 +61,6 @@ pub(super) fn nameless(study: &mut Study<'_, '_>) {
             learned(study, &base);
         }
     }
-}
-
-/// Score that what a model leaves depends on the inputs.
-pub(super) fn left(study: &Study<'_, '_>, model: &Model) -> f64 {
-    let y = study.problem.simulate(model, Grain::Coarse);
-    y.map_or(0.0, |y| dependence(study.problem, study.nominal, &y))
 }
 
 /// The best model, and the one without causes.

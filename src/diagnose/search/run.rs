@@ -7,7 +7,7 @@ use super::chain::{ROUNDS, chain};
 use super::contribution::tangents;
 use super::fits::Wish;
 use super::laws::{Asked, laws_of_places};
-use super::nameless::{left, nameless};
+use super::nameless::nameless;
 use super::selected::{ranking, slots};
 use super::study::Study;
 use super::veto::vetoed;
@@ -113,7 +113,7 @@ fn families(study: &mut Study<'_, '_>) {
         free_chain(study);
         let best = |free: bool| study.beam.best_of(free).map(Fit::posterior);
         let near = best(false).zip(best(true)).is_some_and(|(held, free)| held > free - NEAR);
-        if !near && !study.beam.best().is_some_and(|best| left(study, &best.model) > DEPENDS) {
+        if !near && !study.beam.best().is_some_and(|best| study.dependence(&best.model) > DEPENDS) {
             return;
         }
         if let Some(model) = study.beam.best_of(false).map(|fit| fit.model.clone()) {
@@ -131,7 +131,7 @@ fn families(study: &mut Study<'_, '_>) {
     let near = free.posterior() > held.posterior() - NEAR;
     let many = held.causes() >= SEVERAL;
     let model = if near { &free.model } else { &held.model };
-    if many || near || left(study, model) > DEPENDS {
+    if many || near || study.dependence(model) > DEPENDS {
         free_chain(study);
     }
 }

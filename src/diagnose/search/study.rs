@@ -12,6 +12,7 @@ use crate::candidates::library::{Allowed, library};
 use crate::evidence::{Choices, NoiseModel, Stretches};
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Model, Part, Problem, Span};
+use crate::prepare::input_dependence::dependence;
 use crate::prepare::operating_range::Nominal;
 use crate::statistics::strongest;
 use crate::watch::Watch;
@@ -97,6 +98,12 @@ impl<'a, 'b> Study<'a, 'b> {
         for fit in self.fit(free, wishes, iterations) {
             self.beam.keep(fit);
         }
+    }
+
+    /// Score that what a model leaves depends on the inputs.
+    pub fn dependence(&self, model: &Model) -> f64 {
+        let y = self.problem.simulate(model, Grain::Coarse);
+        y.map_or(0.0, |y| dependence(self.problem, self.nominal, &y))
     }
 
     /// Fits the leading ones once more, each in its own disturbance.

@@ -89,7 +89,8 @@ pub fn ablate(fit: &mut Fit, records: &[Record], prune: bool) -> Result<Vec<Abla
     Ok(found)
 }
 
-fn without(parameters: &[f64], group: &Group) -> Vec<f64> {
+/// Parameters with a group of them switched off.
+pub(super) fn without(parameters: &[f64], group: &Group) -> Vec<f64> {
     let mut changed = parameters.to_vec();
     group.entries.iter().for_each(|&entry| changed[entry] = 0.0);
     changed

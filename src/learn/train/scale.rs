@@ -4,8 +4,11 @@
 use crate::lfr::{Block, Interconnection};
 use crate::optimise::Bounds;
 
-use super::groups::{Group, GroupKind};
+use super::groups::Group;
 use super::sparse::{SMOOTH, Sparse};
+
+/// Root mean square of a group's weights at which re-weighting leaves its penalty as it is.
+const TYPICAL: f64 = 0.1;
 
 /// Unit, nominal value and bounds of every entry of the vector of parameters.
 #[derive(Debug, Clone)]
@@ -14,12 +17,15 @@ pub(crate) struct Units {
     /// Physical parameters: entry, nominal value, bounds, in the optimiser's unit.
     physical: Vec<(usize, f64, [f64; 2])>,
     penalty: f64,
-    /// Groups that are drawn to 0 together, with their weights.
-    groups: Vec<(Vec<usize>, f64)>,
+    /// Groups that are drawn to 0 together, with their weights, and what re-weighting makes of
+    /// these.
+    groups: Vec<(Vec<usize>, f64, f64)>,
     /// Learned entries of S, with the weight of their magnitudes.
     entries: Vec<(usize, f64)>,
     /// Penalty on the magnitudes of the entries of S.
     s: f64,
+    /// Entries that stay as they are.
+    held: Vec<usize>,
 }
 
 impl Units {
@@ -45,35 +51,45 @@ impl Units {
         }
         let first = model.count() - model.s.learned().count();
         let entries = (first..model.count()).map(|at| (at, 1.0)).collect();
-        Self { unit, physical, penalty, groups: vec![], entries, s: 0.0 }
+        Self { unit, physical, penalty, groups: vec![], entries, s: 0.0, held: vec![] }
     }
 
     /// The same with groups of weights drawn to 0.
     pub fn sparse(mut self, sparse: &Sparse, groups: &[Group]) -> Self {
-        let weight = |kind: GroupKind| match kind {
-            GroupKind::State => sparse.states,
-            GroupKind::Input => sparse.inputs,
-            GroupKind::Output => sparse.outputs,
-        };
+        let weight = |kind| sparse.on(kind);
         let drawn = groups.iter().filter(|group| weight(group.kind) > 0.0);
         let drawn = drawn.map(|group| {
             let size = (group.entries.len() as f64).sqrt();
-            (group.entries.clone(), weight(group.kind) * size)
+            (group.entries.clone(), weight(group.kind) * size, 1.0)
         });
         self.groups = drawn.collect();
         self.s = sparse.s;
         self
     }
 
+    /// The same with entries that stay as they are.
+    pub fn holding(mut self, entries: Vec<usize>) -> Self {
+        self.held = entries;
+        self
+    }
+
     /// Weights for the magnitudes of the entries of S from their present values, 1 / (|s| + eps)
-    /// (Candes, Wakin, Boyd, J. Fourier Anal. Appl. 14, 2008).
+    /// (Candes, Wakin, Boyd, J. Fourier Anal. Appl. 14, 2008), and for those of groups from the
+    /// root mean square of theirs (Wang and Leng, Comput. Stat. Data Anal. 52, 2008).
     pub fn reweighted(&self, theta: &[f64]) -> Vec<f64> {
-        self.entries.iter().map(|&(at, _)| 1.0 / (theta[at].abs() + 1e-2)).collect()
+        let entries = self.entries.iter().map(|&(at, _)| 1.0 / (theta[at].abs() + 1e-2));
+        let groups = self.groups.iter().map(|(entries, ..)| {
+            let squares: f64 = entries.iter().map(|&at| theta[at] * theta[at]).sum();
+            TYPICAL / ((squares / entries.len().max(1) as f64).sqrt() + 1e-2)
+        });
+        entries.chain(groups).collect()
     }
 
     /// Takes over such weights.
     pub fn reweight(&mut self, weights: &[f64]) {
-        self.entries.iter_mut().zip(weights).for_each(|(entry, &weight)| entry.1 = weight);
+        let entries = self.entries.iter_mut().map(|entry| &mut entry.1);
+        let all = entries.chain(self.groups.iter_mut().map(|group| &mut group.2));
+        all.zip(weights).for_each(|(own, &weight)| *own = weight);
     }
 
     /// Smallest and largest value of every entry.
@@ -107,7 +123,8 @@ impl Units {
             gradient[at] += self.penalty * away;
             sum += 0.5 * self.penalty * away * away;
         }
-        for (entries, weight) in &self.groups {
+        for (entries, weight, again) in &self.groups {
+            let weight = weight * again;
             let squares: f64 = entries.iter().map(|&at| theta[at] * theta[at]).sum();
             let norm = (squares + SMOOTH * SMOOTH).sqrt();
             sum += weight * (norm - SMOOTH);
@@ -120,6 +137,7 @@ impl Units {
                 gradient[at] += self.s * weight * theta[at] / size;
             }
         }
+        self.held.iter().for_each(|&at| gradient[at] = 0.0);
         sum
     }
 

@@ -5,12 +5,9 @@ use crate::optimise::{AdamState, Named};
 
 use super::batch::{batches, shuffled};
 use super::checkpoint::State;
-use super::counted::counted;
 use super::fit::{Ended, Epoch, Fit, Follow};
-use super::orthogonal::Orthogonal;
 use super::scale::Units;
-use super::settings::Weights;
-use super::shooting::Shooting;
+use super::task::Task;
 use super::validate::Scorer;
 use super::whole::leg;
 use super::{Augmented, MultipleShooting, TrainError, Trainer};
@@ -44,36 +41,19 @@ impl<'a> Steps<'a> {
         validation: &'a [Record],
         fingerprint: u64,
     ) -> Result<Self, TrainError> {
-        let by = &trainer.weights;
-        let counts = match *by == Weights::default() {
-            true => None,
-            false => Some(counted(by, start, training)?),
-        };
-        let deviations = deviations(start, training, counts.as_deref())?;
-        let variances: Vec<f64> = deviations.iter().map(|d| d * d).collect();
-        let Trainer { length, threads, arithmetic, .. } = *trainer;
-        let shooting = Shooting { length, threads, arithmetic };
-        let mut loss = MultipleShooting::new(start, training, shooting, &variances)?;
-        if let Some(counts) = counts {
-            loss.count_by(counts);
-        }
-        if let (true, Some(record)) = (trainer.disguise > 0.0, training.first())
-            && let Some(penalty) = Orthogonal::new(start, record, trainer.disguise)?
-        {
-            loss.penalise(penalty);
-        }
+        let Task { loss, deviations, shooting } = Task::of(trainer, start, training)?;
         let scorer = match validation {
             [] => None,
             records => Some(Scorer::new(start, records, &trainer.validation, shooting)?),
         };
         let mut units = Units::of(&start.model, start.encoder.weights().len(), trainer.penalty)
             .sparse(&trainer.sparse, &start.groups());
+        let theta = units.enter(&start.parameters());
         let known = match &trainer.checkpoint {
-            Some(checkpoint) => State::read(&checkpoint.path, fingerprint)?,
+            Some(checkpoint) => State::read(&checkpoint.path, fingerprint, theta.len())?,
             None => None,
         };
         let resumed = known.as_ref().map(|state| state.epoch);
-        let theta = units.enter(&start.parameters());
         let fresh = State {
             fingerprint,
             epoch: 0,
@@ -99,7 +79,7 @@ impl<'a> Steps<'a> {
         let mut ended = Ended::Budget;
         if self.state.history.is_empty() {
             self.close(0, None)?;
-            if self.tell(follow) {
+            if self.report(follow) {
                 return self.end(Ended::Asked);
             }
         }
@@ -131,7 +111,7 @@ impl<'a> Steps<'a> {
             (self.state.epoch, self.state.step, self.state.loss) = (self.state.epoch + 1, 0, 0.0);
             self.close(self.state.epoch, Some(mean))?;
             self.save(self.state.epoch == self.trainer.epochs)?;
-            if self.tell(follow) {
+            if self.report(follow) {
                 self.save(true)?;
                 return self.end(Ended::Asked);
             }
@@ -179,7 +159,7 @@ impl<'a> Steps<'a> {
         state.legs += usize::from(finishing);
         self.close(self.state.epoch, Some(done.loss))?;
         self.save(true)?;
-        Ok(self.tell(follow))
+        Ok(self.report(follow))
     }
 
     /// One step, or one step back where the last one led to no finite loss.
@@ -236,7 +216,7 @@ impl<'a> Steps<'a> {
             self.state.best = Some((whole, self.state.theta.clone(), epoch));
         }
         let rate = self.trainer.optimiser.batch_rate(&self.state.adam);
-        if self.trainer.sparse.s > 0.0
+        if self.trainer.sparse.draws()
             && epoch > 0
             && epoch.is_multiple_of(self.trainer.sparse.reweight)
         {
@@ -251,8 +231,8 @@ impl<'a> Steps<'a> {
         Ok(())
     }
 
-    /// Tells the last epoch; whether training should end.
-    fn tell(&self, follow: &mut dyn Follow) -> bool {
+    /// Reports the last epoch; whether training should end.
+    fn report(&self, follow: &mut dyn Follow) -> bool {
         self.state.history.last().is_some_and(|epoch| follow.on_epoch(epoch).is_break())
     }
 
@@ -285,25 +265,4 @@ impl<'a> Steps<'a> {
         let (history, rollbacks) = (state.history, state.rollbacks);
         Ok(Fit { model, epoch, history, ended, rollbacks, resumed })
     }
-}
-
-/// Standard deviation of each output over all records, without what does not count; 1 where that
-/// is 0.
-fn deviations(
-    model: &Augmented,
-    records: &[Record],
-    counts: Option<&[Vec<f64>]>,
-) -> Result<Vec<f64>, TrainError> {
-    let mut values = vec![vec![]; model.model.outputs];
-    for (i, record) in records.iter().enumerate() {
-        for (all, own) in values.iter_mut().zip(model.series(record, i + 1)?.y) {
-            all.extend_from_slice(own);
-        }
-    }
-    for (values, counts) in values.iter_mut().zip(counts.unwrap_or_default()) {
-        let masked = values.iter_mut().zip(counts).filter(|(_, count)| **count == 0.0);
-        masked.for_each(|(value, _)| *value = f64::NAN);
-    }
-    let deviation = |values: &Vec<f64>| crate::encoder::Spread::of(values).scale;
-    Ok(values.iter().map(deviation).collect())
 }
