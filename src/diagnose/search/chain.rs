@@ -69,6 +69,9 @@ pub(super) fn chain(study: &mut Study<'_, '_>, free: bool, rounds: Range<usize>)
             return;
         }
         let Some(best) = study.beam.best_of(free).cloned() else { return };
+        if round > 0 {
+            study.watch.tell(0.1 + 0.8 * round as f64 / ROUNDS as f64, "looking for more");
+        }
         let key = best.key();
         let last = before.as_ref() == Some(&key);
         before = Some(key.clone());
@@ -246,6 +249,9 @@ pub(super) fn race(study: &mut Study<'_, '_>, free: bool, wishes: &[Wish], top: 
         .collect();
     for fit in fits {
         study.beam.keep(fit);
+    }
+    if study.watch.stopped() {
+        return;
     }
     study.fit_and_keep(free, &again, ITERATIONS.1);
 }

@@ -111,15 +111,18 @@ fn families(study: &mut Study<'_, '_>) {
     let parameters_first = is_behind(study);
     if parameters_first {
         free_chain(study);
-        let best = |free: bool| study.beam.best_of(free).map(Fit::posterior);
-        let near = best(false).zip(best(true)).is_some_and(|(held, free)| held > free - NEAR);
-        if !near && !study.beam.best().is_some_and(|best| study.dependence(&best.model) > DEPENDS) {
-            return;
-        }
         if let Some(model) = study.beam.best_of(false).map(|fit| fit.model.clone()) {
             study.stand_on(&model);
         }
-        searched(study, false, 0);
+        // a law that stands beside what was found with parameters free may do without them
+        chain(study, false, 0..2);
+        let best = |free: bool| study.beam.best_of(free).map(Fit::posterior);
+        let near = best(false).zip(best(true)).is_some_and(|(held, free)| held > free - NEAR);
+        let depends = |fit: &Fit| study.dependence(&fit.model) > DEPENDS;
+        if !near && !study.beam.best().is_some_and(depends) {
+            return;
+        }
+        searched(study, false, 1);
         toggle(study);
         return;
     }
