@@ -7,6 +7,7 @@ use serde_json::Value;
 
 mod book;
 mod calls;
+mod instruction_sets;
 mod linear;
 mod lists;
 mod look;

@@ -232,3 +232,40 @@ fn a_study_whose_workers_are_killed_ends_with_the_same_bytes() {
     assert!(place.refused("study --config exam.toml --case case41").contains("case41"));
     assert!(!Path::new(&place.0.join("gaps")).exists());
 }
+
+#[test]
+fn what_is_wrong_with_a_file_is_named_with_its_place() {
+    let place = Place::new("places");
+    let at = |arguments: &str| -> Value {
+        let output = place.run(&format!("{arguments} --json"));
+        assert_eq!(output.status.code(), Some(2), "{arguments}");
+        let document: Value = serde_json::from_slice(&output.stdout).unwrap();
+        let error = &document["error"];
+        json!([error["file"], error["line"], error["key"]])
+    };
+    // a setting of an exam
+    place.put("exam.toml", &EXAM.replace("samples = [900]", "samples = [0]"));
+    let place_of_setting = json!(["exam.toml", 3, "samples"]);
+    assert_eq!(at("study --config exam.toml --out whole"), place_of_setting);
+    // an answer
+    place.put("exam.toml", EXAM);
+    place.done("exam write exam --config exam.toml --seed 3");
+    place.put("answers.json", "{\"schema\": 1, \"answers\": [\n{\"case\": 1, \"causes\": 7}]}");
+    let place_of_answer = json!(["answers.json", 2, "answers[0].causes"]);
+    assert_eq!(at("exam mark exam answers.json --out marks"), place_of_answer);
+    // a checkpoint
+    place.put(
+        "generate.toml",
+        "model = \"model.toml\"\nsamples = { est = 300, test = 300 }\n\
+        snr_db = 30.0\nexcitation.filtered_noise = { cutoff = 2.0, order = 2, rms = 20.0 }\n",
+    );
+    place.done("generate --config generate.toml --out data");
+    place.put(
+        "fit.toml",
+        "[encoder.linear]\nn_a = 5\nn_b = 5\n[initialiser.least_squares]\n[training]\n\
+        length = 30\nepochs = 1\nvalidation = { lengths = [5] }\ncheckpoint = { path = \"there.json\" }\n",
+    );
+    place.put("there.json", "{\"fingerprint\": 1,\n\"epoch\": \"two\"}");
+    let fit = "fit --model model.toml --data data/est.csv --validate data/test.csv --config fit.toml --out out";
+    assert_eq!(at(fit), json!(["there.json", 2, null]));
+}

@@ -6,13 +6,16 @@
 //! `LACUNA_FUZZ_SECONDS=60 cargo test -p lacuna --test library fuzz::` goes on for a minute a
 //! reader.
 
+mod regressions;
+mod written;
+
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 
 use lacuna::data::{Random, Step, Table, Want};
-use lacuna::file::{Document, Format, load, parse};
+use lacuna::file::{Document, Format, parse};
 use lacuna::study::{Exam, Generate, MonteCarlo};
-use lacuna::train::{Augmented, Recipe};
+use lacuna::train::Recipe;
 
 /// Inputs per reader in an ordinary run of the tests.
 const SHORT: u64 = 400;
@@ -214,82 +217,7 @@ fn configurations() {
 
 #[test]
 fn weights() {
-    let read = |bytes: &[u8]| {
+    fuzz("weights", NETWORK, |bytes| {
         drop(serde_json::from_slice::<lacuna::network::ResNet>(bytes));
-        drop(serde_json::from_slice::<Augmented>(bytes));
-    };
-    fuzz("weights", NETWORK, read);
-}
-
-/// Inputs that once ended in a panic, an abort, or a loop.
-#[test]
-fn what_once_failed() {
-    for (key, size) in [
-        ("hidden = [4]", "hidden = [9223372036854775807]"),
-        ("hidden = [4]", "hidden = [4294967296, 4294967296]"),
-        ("n_b = 3", "n_b = 4294967296"),
-        ("n_a = 3", "n_a = 9223372036854775807"),
-    ] {
-        let text = FIT.replace(key, size);
-        let recipe: Recipe =
-            Document::parse(&text, "fit.toml", Format::Toml).unwrap().read().unwrap();
-        let system = parse(MODEL, "m.toml", Format::Toml).unwrap();
-        let u: Vec<f64> = (0..200).map(|k| (0.1 * f64::from(k)).sin()).collect();
-        let record = lacuna::data::Record::new(0.1).input("u [N]", u.clone()).unwrap();
-        let record = record.output("y [m]", u).unwrap();
-        assert!(recipe.start(&system, &[record], 0).is_err(), "{size}");
-    }
-    let many = STUDY.replace("seeds = 3", "seeds = 4294967296");
-    let study: MonteCarlo = Document::parse(&many, "s.toml", Format::Toml).unwrap().read().unwrap();
-    assert!(study.check().is_err());
-    if cfg!(unix) {
-        assert!(load("/dev/zero".as_ref()).is_err());
-        assert!(Table::open("/dev/zero").is_err());
-    }
-}
-
-/// Values of effects that make no sense are refused with their key.
-#[test]
-fn effects_that_make_no_sense() {
-    let with = |effect: &str| {
-        let end = MODEL.find("[[effects]]").unwrap();
-        let text = format!("{}[[effects]]\ninto = \"force\"\n{effect}\n", &MODEL[..end]);
-        parse(&text, "m.toml", Format::Toml)
-    };
-    assert!(
-        with("of = \"rate\"\neffect.coulomb_friction = { level = -0.1, width = 0.01 }").is_ok()
-    );
-    for (effect, key) in [
-        ("of = \"rate\"\neffect.coulomb_friction = { level = -0.1, width = 0.0 }", "width"),
-        (
-            "of = \"rate\"\neffect.stribeck_friction = { level = -0.1, extra = 0.1, speed = 0.0, width = 0.1 }",
-            "speed",
-        ),
-        (
-            "of = \"rate\"\neffect.free_form = { knots = [1.0, 0.0, 2.0], values = [1.0, 0.0, 1.0] }",
-            "knots",
-        ),
-        ("of = \"rate\"\neffect.free_form = { knots = [0.0, 0.0], values = [1.0, 0.0] }", "knots"),
-        ("of = \"rate\"\neffect.free_form = { knots = [0.0, 1.0], values = [1.0] }", "values"),
-        ("of = \"rate\"\neffect.hinge = { coefficient = 1.0, start = 0.0, side = 0.0 }", "side"),
-        ("of = \"rate\"\nalso_of = [\"rate\"]\neffect.linear = { coefficient = 1.0 }", "also_of"),
-    ] {
-        let error = with(effect).map(drop).unwrap_err();
-        let place = &error.spot().place;
-        assert!(place.key.as_ref().is_some_and(|k| k.ends_with(key)), "{effect}: {error}");
-        assert!(place.line.is_some(), "{effect}: {error}");
-    }
-    let end = MODEL.find("[[effects]]").unwrap();
-    for effect in [
-        "into = \"y\"\nof = \"y\"\neffect.saturation = { low = 1.0, high = -1.0 }",
-        "into = \"m\"\neffect.parameter = { value = 0.01 }",
-    ] {
-        let text = format!("{}[[effects]]\n{effect}\n", &MODEL[..end]);
-        let error = parse(&text, "m.toml", Format::Toml).map(drop).unwrap_err();
-        assert!(error.spot().place.line.is_some(), "{effect}: {error}");
-    }
-    for law in ["abs(a) * tanh(z / w)", "a*z + max(0, a - 1000)*1e9*w"] {
-        let text = MODEL.replace("a * tanh(z / w)", law);
-        assert!(parse(&text, "m.toml", Format::Toml).is_err(), "{law}");
-    }
+    });
 }

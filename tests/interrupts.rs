@@ -243,3 +243,45 @@ fn a_training_that_is_interrupted_goes_on_to_the_same_weights() {
     let read = |folder: &str| fs::read(place.path(&format!("{folder}/weights.json"))).unwrap();
     assert!(read("whole") == read("broken"), "other weights");
 }
+
+/// Kills in the test below; `LACUNA_KILLS=2000` asks for more of them.
+const KILLS: u32 = 100;
+
+#[test]
+fn a_program_that_is_killed_leaves_every_file_whole() {
+    let place = Place::new("whole_or_not");
+    let call = |out: &str, seed: u32| {
+        place.call(&format!("generate --config generate.toml --out {out} --seed {seed}"))
+    };
+    let files = ["est.csv", "test.csv", "truth.json"];
+    let read = |folder: &str| -> Vec<Vec<u8>> {
+        files.map(|file| fs::read(place.path(folder).join(file)).unwrap()).to_vec()
+    };
+    assert!(call("before", 1).output().unwrap().status.success());
+    let began = Instant::now();
+    assert!(call("after", 2).output().unwrap().status.success());
+    let whole = began.elapsed();
+    let (before, after) = (read("before"), read("after"));
+    let kills = std::env::var("LACUNA_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(KILLS);
+    let (mut killed, mut mixed) = (0, 0);
+    for kill in 0..kills {
+        // the records of one seed are replaced by those of another
+        let _ = fs::remove_dir_all(place.path("out"));
+        fs::create_dir_all(place.path("out")).unwrap();
+        for (file, bytes) in files.iter().zip(&before) {
+            fs::write(place.path("out").join(file), bytes).unwrap();
+        }
+        let mut child = call("out", 2).spawn().unwrap();
+        // moments spread over a whole run
+        std::thread::sleep(whole * kill / kills);
+        let _ = child.kill();
+        killed += u32::from(child.wait().unwrap().code().is_none());
+        let now = read("out");
+        for ((file, now), (old, new)) in files.iter().zip(&now).zip(before.iter().zip(&after)) {
+            assert!(now == old || now == new, "kill {kill}: {file} is neither the old nor the new");
+        }
+        mixed += u32::from(now != before && now != after);
+    }
+    println!("{killed} of {kills} were killed, {mixed} of them between two files");
+    assert!(killed > 0, "none was killed before its end");
+}

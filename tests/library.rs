@@ -3,6 +3,7 @@
 //! One binary for all, because linking costs more than compiling.
 
 mod contract;
+mod estimated;
 mod files;
 mod fitted_model;
 mod fuzz;

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use lacuna::data::{Random, Record};
 use lacuna::estimate::{LinearEstimate, linear};
 use lacuna::evaluate::{Init, Simulation};
-use lacuna::fault::{Explain, told};
+use lacuna::fault::{Explain, render};
 use nalgebra::{DMatrix, DVector};
 
 mod accuracy;

@@ -2,7 +2,7 @@
 //! about it, and how it is refused.
 
 use lacuna::data::{DataError, Reading, Record, Remark, Step, Table, Want, read_for};
-use lacuna::fault::{Explain, Kind, Place, told};
+use lacuna::fault::{Explain, Kind, Place, render};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 use std::io::Write;
@@ -39,7 +39,7 @@ fn one(segment: Range<usize>) -> [Range<usize>; 1] {
 fn accepted(text: impl AsRef<[u8]>, want: &Want) -> (Record, Vec<String>) {
     match read(text, want) {
         Ok((record, remarks)) => (record, remarks.iter().map(Remark::to_string).collect()),
-        Err(error) => panic!("refused: {}", told(&error)),
+        Err(error) => panic!("refused: {}", render(&error)),
     }
 }
 
@@ -63,7 +63,7 @@ fn refused(
     assert_eq!(error.kind(), Kind::Input);
     assert!(error.hint().is_some(), "{error}");
     assert!(error.to_string().starts_with("press.csv"), "{error}");
-    assert!(!told(&error).trim().contains("\n\n"));
+    assert!(!render(&error).trim().contains("\n\n"));
     error
 }
 
@@ -200,7 +200,7 @@ fn shared_data_every_regular_file_has_a_clock() {
             let last = table.names().last().unwrap().to_string();
             if table.names().contains(&"time") {
                 let record = table.pick(&[], &[&last]);
-                assert!(record.is_ok(), "{name}: {}", told(&record.unwrap_err()));
+                assert!(record.is_ok(), "{name}: {}", render(&record.unwrap_err()));
             }
         }
     }

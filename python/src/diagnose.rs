@@ -58,7 +58,7 @@ pub fn diagnose(
                 (found.system, Some(share))
             }
         };
-        let mut answer = told(&system, &records, test.as_ref(), &settings, written, watch)?;
+        let mut answer = answer(&system, &records, test.as_ref(), &settings, written, watch)?;
         if share.is_some() {
             let text = lacuna::file::to_toml(&system)?;
             answer.texts.insert("linear.toml".into(), text);
@@ -70,7 +70,7 @@ pub fn diagnose(
 }
 
 /// The diagnosis, and all that is made of it.
-fn told(
+fn answer(
     system: &System,
     records: &[Record],
     test: Option<&Record>,

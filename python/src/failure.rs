@@ -1,6 +1,6 @@
 //! Errors as Python exceptions, in the words of the program.
 
-use lacuna::fault::{Explain, Kind, Place, told};
+use lacuna::fault::{Explain, Kind, Place, render};
 use lacuna::file::FileError;
 use pyo3::create_exception;
 use pyo3::exceptions::PyException;
@@ -40,11 +40,11 @@ impl Failure {
         Self { kind: Kind::Work, message, pretty, place: Place::default(), hint: None }
     }
 
-    fn told(error: &dyn Explain) -> Self {
+    fn explained(error: &dyn Explain) -> Self {
         Self {
             kind: error.kind(),
             message: error.to_string(),
-            pretty: told(error),
+            pretty: render(error),
             place: error.place(),
             hint: error.hint(),
         }
@@ -53,7 +53,7 @@ impl Failure {
 
 impl From<FileError> for Failure {
     fn from(error: FileError) -> Self {
-        Self { pretty: error.pretty(), ..Self::told(&error) }
+        Self { pretty: error.pretty(), ..Self::explained(&error) }
     }
 }
 
@@ -68,7 +68,7 @@ macro_rules! explained {
     ($($error:ty),*) => {$(
         impl From<$error> for Failure {
             fn from(error: $error) -> Self {
-                Self::told(&error)
+                Self::explained(&error)
             }
         }
     )*};

@@ -7,7 +7,7 @@ use lacuna::data::Record;
 use lacuna::evaluate::{Init, Simulation, want};
 use lacuna::file::{Document, Format, to_toml_with};
 use lacuna::report::documents::{Fitted, fitted, scores};
-use lacuna::report::{ReadBack, Shown, TrainingReport};
+use lacuna::report::{Compared, ReadBack, TrainingReport};
 use lacuna::system::System;
 use lacuna::train::{Ended, Epoch, Follow, Recipe, warnings};
 use lacuna::watch::Watch;
@@ -154,7 +154,7 @@ fn trained(
             arrays.insert(format!("before:{name}"), baseline[o].clone());
             arrays.insert(format!("after:{name}"), run.outputs[o].clone());
         }
-        report = report.showing(Shown { record, baseline: &baseline, run: &run });
+        report = report.showing(Compared { record, baseline: &baseline, run: &run });
     }
     let is_test = data.test.is_some();
     let (parts, disguise) = (&parts, disguise.as_ref());

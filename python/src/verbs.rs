@@ -99,7 +99,7 @@ pub fn check(model: &Model, tables: Tables<'_>, settings: &str) -> PyResult<Job>
     let (system, level) = (system_of(model), settings.level);
     let work = move |watch: &crate::job::Shared| {
         let checked = Diagnosis::of(&system).max_causes(1).check(&records, watch)?;
-        let document = documents::checked(&checked, level)?.to_string();
+        let document = documents::goodness_of_fit(&checked, level)?.to_string();
         let p = checked.p_value.map(|p| number(p, None));
         let verdict = match p {
             None => "Interrupted: there is no verdict.".into(),

@@ -41,7 +41,7 @@ pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
     for cause in checked.data_faults.iter().chain(of_the_model) {
         look.result(&sentences::cause(cause));
     }
-    let document = documents::checked(&checked, args.level).map_err(Failure::unwritable)?;
+    let document = documents::goodness_of_fit(&checked, args.level).map_err(Failure::unwritable)?;
     look.document(&document);
     Ok(match rejected {
         None => NO_VERDICT,

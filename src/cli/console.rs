@@ -48,7 +48,7 @@ struct Course {
     since: Option<Instant>,
     spent: Vec<(String, Duration)>,
     /// When it was last told.
-    told: Duration,
+    reported: Duration,
 }
 
 impl Course {
@@ -190,9 +190,9 @@ impl Watch for Console {
             course.count(Instant::now());
             course.doing = doing.to_string();
         }
-        let due = spent > course.told + LONG;
+        let due = spent > course.reported + LONG;
         if due || (is_new && self.verbose) {
-            course.told = spent;
+            course.reported = spent;
         }
         drop(course);
         if is_new && self.verbose {

@@ -170,7 +170,7 @@ fn finish(
     let document = document.text().map_err(Failure::unwritable)?;
     let json = out.join(DOCUMENT);
     write_text(&json, &document).map_err(|error| cannot_write(&json, &error))?;
-    tell(&finding, rehearsed.as_ref(), out, look);
+    summarise(&finding, rehearsed.as_ref(), out, look);
     if look.json {
         print(&document);
     }
@@ -196,10 +196,10 @@ fn rehearsed(
             "{done} of {count} rehearsals are done; the same call without --shard does the rest."
         ));
     }
-    Ok(Some(rehearsal.told(count, out)?))
+    Ok(Some(rehearsal.summary(count, out)?))
 }
 
-fn tell(finding: &Finding, rehearsed: Option<&Rehearsed>, out: &Path, look: &Console) {
+fn summarise(finding: &Finding, rehearsed: Option<&Rehearsed>, out: &Path, look: &Console) {
     if finding.interrupted {
         look.result("Interrupted: this is what was known.");
     }

@@ -66,14 +66,14 @@ impl Failure {
     /// A typed error in other words: what to try differs by command.
     pub fn with_hint(error: &dyn Explain, hint: String) -> Self {
         let pretty = format!("{error}\n  try: {hint}");
-        Self { hint: Some(hint), pretty, ..Self::told(error) }
+        Self { hint: Some(hint), pretty, ..Self::explained(error) }
     }
 
-    fn told(error: &dyn Explain) -> Self {
+    fn explained(error: &dyn Explain) -> Self {
         Self {
             kind: error.kind(),
             message: error.to_string(),
-            pretty: lacuna::fault::told(error),
+            pretty: lacuna::fault::render(error),
             place: error.place(),
             hint: error.hint(),
         }
@@ -83,12 +83,18 @@ impl Failure {
     /// knows its own key, not the file that it was read from. `other` is what a key is called
     /// there.
     pub fn in_file(mut self, path: &Path, document: &Document, other: [&str; 2]) -> Self {
-        if self.kind != Kind::Input || self.place.file.is_some() {
+        if self.kind == Kind::Work || self.place.file.is_some() {
             return self;
         }
         let key = self.place.key.as_ref().map(|key| key.replacen(other[0], other[1], 1));
         let lead = self.place.lead();
         let found = key.as_deref().and_then(|key| document.spot_ending(key));
+        // a wrong argument of the library is a wrong setting of the file that it was read from
+        match found {
+            Some(_) => self.kind = Kind::Input,
+            None if self.kind == Kind::Call => return self,
+            None => {}
+        }
         let place = found.map_or_else(
             || Place { file: Some(path.display().to_string()), ..self.place.clone() },
             |spot| spot.place,
@@ -158,7 +164,7 @@ fn document(kind: Kind, message: &str, place: &Place, hint: Option<&str>) {
 
 impl From<FileError> for Failure {
     fn from(error: FileError) -> Self {
-        Self { pretty: error.pretty(), ..Self::told(&error) }
+        Self { pretty: error.pretty(), ..Self::explained(&error) }
     }
 }
 
@@ -166,7 +172,7 @@ macro_rules! explained {
     ($($error:ty),*) => {$(
         impl From<$error> for Failure {
             fn from(error: $error) -> Self {
-                Self::told(&error)
+                Self::explained(&error)
             }
         }
     )*};

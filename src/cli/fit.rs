@@ -18,7 +18,7 @@ use lacuna::digits::number;
 use lacuna::evaluate::{Init, Metrics, Simulation};
 use lacuna::file::{Document, save_with, write_text};
 use lacuna::report::documents::{self, Fitted, fitted};
-use lacuna::report::{Shown, TrainingReport};
+use lacuna::report::{Compared, TrainingReport};
 use lacuna::system::System;
 use lacuna::train::{Ablation, Checkpoint, Disguise, Ended, Epoch, Fit, Recipe, warnings};
 
@@ -37,6 +37,8 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     outputs::distinct(&args.on.data, &apart)?;
     let document = Document::load(&args.config)?;
     let mut recipe: Recipe = document.read()?;
+    let located = |error| Failure::from(error).in_file(&args.config, &document, [""; 2]);
+    recipe.training.check().map_err(located)?;
     let checkpoint = recipe
         .training
         .checkpoint
@@ -70,7 +72,6 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let available = || std::thread::available_parallelism().map_or(1, usize::from);
     recipe.training.threads = threads.unwrap_or_else(available);
     look.hear_interrupts()?;
-    let located = |error| Failure::from(error).in_file(&args.config, &document, [""; 2]);
     let begun = recipe.start(&system, &records, recipe.training.seed);
     let (start, started) = begun.map_err(located)?;
     // what cannot be saved is better known before the work than after it
@@ -82,7 +83,11 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     let lengths = recipe.training.validation.lengths.clone();
     let page = Following::of(args.out.join(PAGE), &want.outputs, &lengths);
     let mut progress = Progress::of(look, recipe.training.all_epochs(), page);
-    let mut fit = recipe.training.fit(&start, &records, &validation, &mut progress)?;
+    let fit = recipe.training.fit(&start, &records, &validation, &mut progress);
+    let mut fit = fit.map_err(|error| {
+        look.clear();
+        located(error)
+    })?;
     let mut parts = vec![];
     if fit.ended != Ended::Asked {
         parts = recipe.training.prune(&mut fit, &records, &validation, &mut progress)?;
@@ -145,7 +150,7 @@ impl Done<'_> {
         }
         let baseline: Vec<Vec<f64>> = before.into_iter().map(|(_, values)| values).collect();
         if let (Some(record), Some(run)) = (shown, &run) {
-            report = report.showing(Shown { record, baseline: &baseline, run });
+            report = report.showing(Compared { record, baseline: &baseline, run });
         }
         let page = out.join(PAGE);
         report.write(&page).map_err(|error| cannot_write(&page, &error))?;
@@ -153,11 +158,11 @@ impl Done<'_> {
             (Some(record), Some(run)) => documents::scores(record, self.want, &baseline, run),
             _ => vec![],
         };
-        self.tell(&scores, is_test, look);
+        self.summarise(&scores, is_test, look);
         Ok(0)
     }
 
-    fn tell(&self, scores: &[[Option<Metrics>; 2]], is_test: bool, look: &Console) {
+    fn summarise(&self, scores: &[[Option<Metrics>; 2]], is_test: bool, look: &Console) {
         let (fit, out) = (self.fit, &self.args.out);
         let interrupted = fit.ended == Ended::Asked;
         if interrupted {

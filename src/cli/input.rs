@@ -47,7 +47,7 @@ pub fn record(
     look: &Console,
 ) -> Result<Record, Failure> {
     let (record, remarks) = table(path)?.record_by(want, &columns.reading())?;
-    tell(path, &remarks, look);
+    say_remarks(path, &remarks, look);
     Ok(record)
 }
 
@@ -62,7 +62,7 @@ pub fn records(
     for path in paths {
         for table in tables(path)? {
             let (record, remarks) = table.record_by(want, &columns.reading())?;
-            tell(path, &remarks, look);
+            say_remarks(path, &remarks, look);
             records.push(record);
         }
     }
@@ -100,12 +100,12 @@ pub fn record_to_simulate(
     look: &Console,
 ) -> Result<Record, Failure> {
     let (record, remarks) = table(path)?.record_to_simulate(want, &columns.reading())?;
-    tell(path, &remarks, look);
+    say_remarks(path, &remarks, look);
     Ok(record)
 }
 
 /// Says what was noticed in a record.
-pub fn tell(path: &Path, remarks: &[Remark], look: &Console) {
+pub fn say_remarks(path: &Path, remarks: &[Remark], look: &Console) {
     for remark in remarks {
         look.say(&format!("{}: {remark}", path.display()));
     }

@@ -19,14 +19,14 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     let found = linear_with(&records, order, look)?;
     look.clear();
     save_with(&found.system, &args.out, &["Written by `lacuna estimate --lti`.".into()])?;
-    tell(&found, look);
+    summarise(&found, look);
     look.say(&format!("Wrote {}", args.out.display()));
     let file = args.out.display().to_string();
     look.document(&documents::linear(&found, Some(&file)));
     Ok(0)
 }
 
-fn tell(found: &LinearEstimate, look: &Console) {
+fn summarise(found: &LinearEstimate, look: &Console) {
     let values: Vec<String> =
         found.singular_values.iter().take(16).map(|value| number(*value, None)).collect();
     look.detail(&format!("singular values: {}", values.join(", ")));

@@ -28,7 +28,7 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     for path in &args.data {
         for table in input::tables(path)? {
             let (record, remarks) = asked.record_to_look_at(table)?;
-            input::tell(path, &remarks, look);
+            input::say_remarks(path, &remarks, look);
             pages.push(if pages.is_empty() {
                 PAGE.into()
             } else {

@@ -24,7 +24,7 @@ impl Asked<'_> {
         for path in paths {
             for table in input::tables(path)? {
                 let (record, remarks) = self.record(table)?;
-                input::tell(path, &remarks, look);
+                input::say_remarks(path, &remarks, look);
                 records.push(record);
             }
         }

@@ -3,7 +3,7 @@
 //! Every typed error of the library implements [`Explain`]. Its `Display` text says what
 //! was found; the program adds [`Explain::place`] and [`Explain::hint`] on its own lines
 //! or as fields of the JSON document, and a library user gets all of it in one piece
-//! from [`told`].
+//! from [`render`].
 
 use serde::Serialize;
 use std::fmt;
@@ -108,14 +108,14 @@ pub trait Explain: std::error::Error {
 ///
 /// ```
 /// use lacuna::data::Record;
-/// use lacuna::fault::told;
+/// use lacuna::fault::render;
 ///
 /// let error = Record::csv("no/such/file.csv").unwrap_err();
-/// assert!(told(&error).starts_with("no/such/file.csv: cannot be read"));
-/// assert!(told(&error).contains("\n  try: "));
+/// assert!(render(&error).starts_with("no/such/file.csv: cannot be read"));
+/// assert!(render(&error).contains("\n  try: "));
 /// ```
 #[doc(hidden)]
-pub fn told(error: &dyn Explain) -> String {
+pub fn render(error: &dyn Explain) -> String {
     match error.hint() {
         Some(hint) => format!("{error}\n  try: {hint}"),
         None => error.to_string(),

@@ -1,9 +1,9 @@
 //! The fit itself: simulation error, several starts, bounds, intervals.
 
 mod lower;
+mod outcome;
 mod residuals;
 mod starts;
-mod told;
 
 use serde::Serialize;
 
@@ -126,7 +126,7 @@ fn from_best_start(
     watch.tell(0.3, "fitting");
     let done = descend(&fit, best)?;
     watch.tell(1.0, "done");
-    fit.told(&done, before)
+    fit.outcome(&done, before)
 }
 
 struct Fit<'a> {

@@ -136,7 +136,7 @@ impl Predictor {
             log_odds: set.log_odds,
             law: sum(same).min(1.0),
             at_place: sum(survey.sets.iter().filter(at).collect()).min(1.0),
-            others: others.map(|other| self.told(other.clone())).collect(),
+            others: others.map(|other| self.fitted_laws(other.clone())).collect(),
             chosen_again: false,
         }
     }

@@ -71,7 +71,7 @@ struct Led {
 impl Predictor {
     fn places(&self, noise: &Noise) -> Result<RankedPlaces, LikelihoodError> {
         let Survey { null, mut places, sets } = self.survey(noise, None)?;
-        let sets: Vec<FittedLaws> = sets.into_iter().map(|set| self.told(set)).collect();
+        let sets: Vec<FittedLaws> = sets.into_iter().map(|set| self.fitted_laws(set)).collect();
         // an exact fit knows better than a curve on the old path
         for place in &mut places {
             let own = sets.iter().filter(|set| set.is_at(&place.into, place.of.as_deref()));

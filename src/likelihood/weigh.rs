@@ -77,7 +77,7 @@ impl Predictor {
     }
 
     /// A set as entries of a model file.
-    pub(crate) fn told(&self, set: Weighed) -> FittedLaws {
+    pub(crate) fn fitted_laws(&self, set: Weighed) -> FittedLaws {
         let Weighed { hypothesis, log_odds, probability, .. } = set;
         let moved = |part: &Part| match part {
             Part::Parameter(p) => Some((self.name(Site::Parameter(*p)), hypothesis.theta[*p])),

@@ -54,7 +54,7 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
         page.element("p", "", &format!("It acts {}.", sentences::acts_where(acts)));
     }
     if let Some(records) = &cause.records {
-        shown(page, records);
+        weights(page, records);
     }
     if let Some(rows) = cause.rows.as_ref().filter(|rows| !rows.is_empty()) {
         let shown: Vec<String> = rows.iter().take(60).map(ToString::to_string).collect();
@@ -98,7 +98,7 @@ fn rivals(page: &mut Page, cause: &Cause) {
 }
 
 /// The section of causes that single ones of several records show.
-pub fn alone(page: &mut Page, finding: &Finding) {
+pub fn single_records(page: &mut Page, finding: &Finding) {
     if finding.alone.is_empty() {
         return;
     }
@@ -106,12 +106,12 @@ pub fn alone(page: &mut Page, finding: &Finding) {
     for alone in &finding.alone {
         let said = format!("{} on its own: {}", alone.record, sentences::cause(&alone.cause));
         page.element("p", "", &said);
-        shown(page, alone.cause.records.as_deref().unwrap_or_default());
+        weights(page, alone.cause.records.as_deref().unwrap_or_default());
     }
 }
 
 /// What each record says of a cause.
-fn shown(page: &mut Page, records: &[InRecord]) {
+fn weights(page: &mut Page, records: &[InRecord]) {
     let rows = records.iter().map(|record| {
         let weight = record.weight.map_or_else(
             || "not moved by it".into(),

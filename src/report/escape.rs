@@ -52,7 +52,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn markup_and_acting_characters_are_shown_not_obeyed() {
+    fn markup_and_acting_characters_are_displayed_not_obeyed() {
         assert_eq!(escape("a<b>&\"'"), "a&lt;b&gt;&amp;&quot;&#39;");
         assert_eq!(escape("x\u{202e}y\u{7}"), "x[U+202E]y[U+0007]");
         // letters that are written from right to left are no control

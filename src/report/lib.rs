@@ -50,7 +50,7 @@ pub use self::{
     page::{Cell, Page, share},
     provenance::FileUsed,
     read_back::ReadBack,
-    training::Shown,
+    training::Compared,
 };
 
 /// The report of a diagnosis: one self-contained HTML page.
@@ -138,7 +138,7 @@ impl<'a> Report<'a> {
             cause::section(&mut page, finding, index);
         }
         cause::unexplained(&mut page, finding);
-        cause::alone(&mut page, finding);
+        cause::single_records(&mut page, finding);
         apart::section(&mut page, finding, self.outlook);
         missing::section(&mut page, finding);
         signals::sections(&mut page, &finding.series, finding);

@@ -15,7 +15,7 @@ const STRETCHES: usize = 900;
 const DOTS: usize = 1500;
 /// Coordinates that are drawn for each channel, and that are told in words.
 const DRAWN: usize = 3;
-const TOLD: usize = 4;
+const REPORTED: usize = 4;
 
 /// The section of a diagnosis: what has to be added at each channel for the model to follow the record.
 pub(super) fn section(page: &mut Page, finding: &Finding) {
@@ -169,7 +169,7 @@ fn line(force: &MissingForce) -> String {
     let shares: Vec<String> = force
         .explained_by
         .iter()
-        .take(TOLD)
+        .take(REPORTED)
         .map(|e| format!("{} {:.0} %", e.coordinate, 100.0 * e.share))
         .collect();
     let by = match shares.is_empty() {

@@ -18,7 +18,7 @@ const ROLES: [Role; 4] = [Role::After, Role::Before, Role::Law, Role::Floor];
 
 /// A record with the baseline's and the trained model's simulation of it.
 #[derive(Debug, Clone, Copy)]
-pub struct Shown<'a> {
+pub struct Compared<'a> {
     /// What was measured.
     pub record: &'a Record,
     /// One series per output, of the baseline alone.
@@ -39,7 +39,7 @@ pub struct TrainingReport<'a> {
     epochs: usize,
     outputs: Vec<(String, String)>,
     lengths: Vec<usize>,
-    shown: Option<Shown<'a>>,
+    compared: Option<Compared<'a>>,
     notes: Vec<String>,
     curves: Vec<LearnedCurve>,
 }
@@ -71,7 +71,7 @@ impl<'a> TrainingReport<'a> {
             epochs,
             outputs,
             lengths,
-            shown: None,
+            compared: None,
             notes: vec![],
             curves: vec![],
         }
@@ -79,8 +79,8 @@ impl<'a> TrainingReport<'a> {
 
     /// The same with a record.
     #[must_use]
-    pub fn showing(mut self, shown: Shown<'a>) -> Self {
-        self.shown = Some(shown);
+    pub fn showing(mut self, compared: Compared<'a>) -> Self {
+        self.compared = Some(compared);
         self
     }
 
@@ -117,8 +117,8 @@ impl<'a> TrainingReport<'a> {
         }
         self.curves.iter().for_each(|curve| section(&mut page, curve));
         self.courses(&mut page);
-        if let Some(shown) = self.shown {
-            self.signals(&mut page, shown);
+        if let Some(compared) = self.compared {
+            self.signals(&mut page, compared);
         }
         self.table(&mut page);
         let page = page.titled("Training");
@@ -171,17 +171,19 @@ impl<'a> TrainingReport<'a> {
         }
     }
 
-    fn signals(&self, page: &mut Page, shown: Shown<'_>) {
-        let start = shown.run.starts.first().copied().unwrap_or(0);
+    fn signals(&self, page: &mut Page, compared: Compared<'_>) {
+        let start = compared.run.starts.first().copied().unwrap_or(0);
         for (o, (name, unit)) in self.outputs.iter().enumerate() {
-            let (Some(simulated), Some(baseline), Some(measured)) =
-                (shown.run.outputs.get(o), shown.baseline.get(o), shown.record.outputs.get(o))
-            else {
+            let (Some(simulated), Some(baseline), Some(measured)) = (
+                compared.run.outputs.get(o),
+                compared.baseline.get(o),
+                compared.record.outputs.get(o),
+            ) else {
                 continue;
             };
             let overlay = Overlay {
                 output: (name, unit),
-                step: shown.record.sampling_time,
+                step: compared.record.sampling_time,
                 measured: &measured.values,
                 simulated: vec![
                     (Role::Before, "baseline", baseline),

@@ -3,7 +3,7 @@
 use crate::data::DataError;
 use crate::diagnose::DiagnoseError;
 use crate::evaluate::EvaluateError;
-use crate::fault::{Explain, Kind};
+use crate::fault::{Explain, Kind, Place};
 use crate::file::{FileError, write_hint};
 use crate::system::SystemError;
 use crate::train::TrainError;
@@ -72,12 +72,36 @@ pub enum StudyError {
         path: String,
         /// What is wrong with it.
         reason: String,
+        /// Where in the file, where that is known.
+        at: Box<Place>,
     },
 }
 
 impl StudyError {
     pub(super) fn merge(path: &std::path::Path, reason: impl ToString) -> Self {
-        Self::Merge { path: path.display().to_string(), reason: reason.to_string() }
+        let (path, reason) = (path.display().to_string(), reason.to_string());
+        let at = Place { file: Some(path.clone()), ..Place::default() };
+        Self::Merge { path, reason, at: Box::new(at) }
+    }
+
+    /// A JSON file that does not hold what it should.
+    pub(super) fn unread(
+        path: &std::path::Path,
+        key: Option<String>,
+        error: &serde_json::Error,
+    ) -> Self {
+        let path = path.display().to_string();
+        let place = Place {
+            file: Some(path.clone()),
+            line: Some(error.line()).filter(|line| *line > 0),
+            column: Some(error.column()).filter(|column| *column > 0),
+            key,
+        };
+        let reason = match &place.key {
+            Some(key) => format!("`{key}`: {error}"),
+            None => error.to_string(),
+        };
+        Self::Merge { path, reason, at: Box::new(place) }
     }
 
     pub(super) fn write(path: &std::path::Path, source: std::io::Error) -> Self {
@@ -125,7 +149,7 @@ impl Explain for StudyError {
         }
     }
 
-    fn place(&self) -> crate::fault::Place {
+    fn place(&self) -> Place {
         match self {
             Self::Data(error) => error.place(),
             Self::Diagnose(error) => error.place(),
@@ -133,7 +157,10 @@ impl Explain for StudyError {
             Self::System(error) => error.place(),
             Self::File(error) => error.place(),
             Self::Train(error) => error.place(),
-            _ => crate::fault::Place::default(),
+            Self::Setting { name, .. } => Place { key: Some(name.clone()), ..Place::default() },
+            Self::Merge { at, .. } => (**at).clone(),
+            Self::Write { path, .. } => Place { file: Some(path.clone()), ..Place::default() },
+            _ => Place::default(),
         }
     }
 }

@@ -131,6 +131,17 @@ pub(super) fn apart(seed: u64) -> u64 {
     mixed ^ (mixed >> 31)
 }
 
+/// Samples of a made record at most; a record has several columns of them.
+const MOST_SAMPLES: usize = 100_000_000;
+
+/// Refuses a length before memory is taken for it.
+pub(super) fn fits(key: &str, samples: usize) -> Result<(), StudyError> {
+    match samples <= MOST_SAMPLES {
+        true => Ok(()),
+        false => Err(StudyError::setting(key, samples, &format!("at most {MOST_SAMPLES}"))),
+    }
+}
+
 impl Generate {
     /// Both records.
     ///
@@ -139,6 +150,12 @@ impl Generate {
     /// If a setting is out of range, a name is unknown, or the system diverges.
     pub fn make(&self, system: &System, seed: u64) -> Result<Generated, StudyError> {
         let sampling_time = system.sampling_time(self.sampling_time)?;
+        let lengths = [
+            ("samples.est", self.samples.est),
+            ("samples.test", self.samples.test),
+            ("transient", self.transient),
+        ];
+        lengths.into_iter().try_for_each(|(key, length)| fits(key, length))?;
         let mut records = BTreeMap::new();
         let mut one = |name: &'static str, samples: usize, number: u64| {
             let (record, truth) = self.record(system, sampling_time, samples, seed, number)?;

@@ -173,7 +173,7 @@ impl Done {
     /// If the file cannot be read or is no result.
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         let text = std::fs::read_to_string(path).map_err(|error| StudyError::merge(path, error))?;
-        serde_json::from_str(&text).map_err(|error| StudyError::merge(path, error))
+        serde_json::from_str(&text).map_err(|error| StudyError::unread(path, None, &error))
     }
 }
 

@@ -140,8 +140,8 @@ impl StudyResult {
                     Some("noise.json") => {
                         let text = std::fs::read_to_string(&path)
                             .map_err(|e| StudyError::merge(&path, e))?;
-                        noise =
-                            serde_json::from_str(&text).map_err(|e| StudyError::merge(&path, e))?;
+                        noise = serde_json::from_str(&text)
+                            .map_err(|e| StudyError::unread(&path, None, &e))?;
                     }
                     Some(name) if name.ends_with(".json") && !name.contains("checkpoint") => {
                         done.push(Done::read(&path)?);

@@ -68,3 +68,35 @@ fn a_setting_is_found_in_the_file_that_sets_it() {
     let place = at(9, 8, "hidden[0].into");
     refused(&folder, "generate --config g.toml --out out", "input", place, &["nowhere", "force"]);
 }
+
+#[test]
+fn a_size_that_no_memory_holds_is_found_in_the_file_that_asks_for_it() {
+    let folder = super::scratch("setting_size");
+    std::fs::write(folder.join("m.toml"), super::MODEL).unwrap();
+    super::record(&folder, "d.csv", "m.toml", 300, 0.01);
+    super::record(&folder, "v.csv", "m.toml", 200, 0.02);
+    let fit = |key: &str, value: &str| {
+        let text = "[structure]\nhidden = [4]\n[encoder.resnet]\nn_a = 3\nn_b = 3\nhidden = [4]\n\
+                    [initialiser.random]\n[training]\nlength = 20\nepochs = 1\n";
+        assert!(text.contains(key));
+        std::fs::write(folder.join("f.toml"), text.replace(key, value)).unwrap();
+    };
+    let call = "fit --model m.toml --data d.csv --validate v.csv --config f.toml --out out";
+    let at = |line, column, key| At { file: "f.toml", line, column, key };
+    fit("[structure]\nhidden = [4]", "[structure]\nhidden = [9223372036854775807]");
+    refused(&folder, call, "input", at(2, 10, "structure.hidden"), &["weights"]);
+    fit("n_b = 3\nhidden = [4]", "n_b = 3\nhidden = [4294967296, 4294967296]");
+    refused(&folder, call, "input", at(3, 2, "encoder"), &["weights"]);
+    fit("n_b = 3", "n_b = 4294967296");
+    refused(&folder, call, "input", at(3, 2, "encoder"), &["4294967296"]);
+    fit("length = 20", "length = 0");
+    refused(&folder, call, "input", at(9, 10, "training.length"), &["0"]);
+    std::fs::write(
+        folder.join("g.toml"),
+        "model = \"m.toml\"\nsamples = { est = 9223372036854775807, test = 30 }\nsnr_db = 30.0\n\
+         [excitation.filtered_noise]\ncutoff = 2.0\norder = 2\nrms = 1.0\n",
+    )
+    .unwrap();
+    let place = At { file: "g.toml", line: 2, column: 19, key: "samples.est" };
+    refused(&folder, "generate --config g.toml --out out", "input", place, &["100000000"]);
+}

@@ -42,6 +42,10 @@ fn a_sensor_that_says_one_number_throughout_is_dead_and_no_physics() {
         let causes = document["causes"].as_array().unwrap();
         assert!(causes.iter().all(|cause| cause["effect"] == "stuck"), "{document:#}");
         assert_eq!(causes.len(), 1, "{document:#}");
+        // no test was made of it, and what is compared has a sign
+        assert!(causes[0]["p_value"].is_null(), "{document:#}");
+        let ratio = document["gain"]["test_rmse_ratio"].as_f64().unwrap();
+        assert!(ratio.is_sign_positive() && ratio.is_finite(), "{ratio}");
         let checked = run(&folder, "check --model m.toml --data dead.csv --json").exits(4).json();
         assert_eq!(faults(&checked), ["stuck"], "{checked:#}");
     }

@@ -11,7 +11,7 @@ fn record(samples: usize) -> Record {
 #[track_caller]
 fn refused(records: &[Record], order: Option<usize>, words: &[&str]) {
     let error = linear(records, order).unwrap_err();
-    let text = told(&error);
+    let text = render(&error);
     assert!(error.hint().is_some());
     for word in words {
         assert!(text.contains(word), "no `{word}` in: {text}");

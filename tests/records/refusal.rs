@@ -24,7 +24,7 @@ fn files_that_are_not_there_empty_or_broken() {
 fn what_is_no_text() {
     let error = refused(b"time,force\n0,1\n\xF0\x01,2\n", &press(), 3, 0, "");
     assert!(matches!(error, DataError::NotText { byte: 0x01, .. }), "{error}");
-    assert!(!told(&error).contains("degree"), "{error}");
+    assert!(!render(&error).contains("degree"), "{error}");
     for (bytes, word) in [
         (&b"\x89HDF\r\n\x1a\n and more"[..], "savez"),
         (b"MATLAB 7.3 MAT-file, Platform: GLNXA64", "-v7"),
@@ -43,7 +43,7 @@ fn what_is_no_text() {
 fn a_line_of_names_that_is_none() {
     let error = refused("# time,force\n0,1\n1,2\n", &press(), 2, 0, "");
     assert!(matches!(error, DataError::NoHeader { comment: Some(1), .. }));
-    assert!(told(&error).contains("line 1"));
+    assert!(render(&error).contains("line 1"));
     refused("force [N,position\n1,2\n", &press(), 1, 1, "");
     refused("force,\"position\n1,2\n", &press(), 1, 2, "");
     let error = refused("force,position,force [N]\n1,2,3\n", &press(), 1, 3, "force");
@@ -85,7 +85,7 @@ fn decimal_commas() {
     ] {
         let error = refused(text, &press(), 2, column, key);
         assert!(matches!(error, DataError::DecimalComma { .. }), "{error}");
-        assert!(told(&error).contains("point"));
+        assert!(render(&error).contains("point"));
     }
 }
 
@@ -120,11 +120,11 @@ fn irregular_time() {
     let jitter = "time,force,position\n0,1,2\n0.1,1,2\n0.2,1,2\n0.302,1,2\n0.4,1,2\n0.5,1,2\n";
     let error = refused(jitter, &press(), 5, 1, "time");
     assert!(matches!(error, DataError::TimeIrregular { missing_rows: 0, .. }));
-    assert!(told(&error).contains("--repair"), "{error}");
+    assert!(render(&error).contains("--repair"), "{error}");
     let gap = "# c\ntime [ms],force,position\n0,1,2\n1,1,2\n4,1,2\n5,1,2\n6,1,2\n7,1,2\n";
     let error = refused(gap, &press(), 5, 1, "time");
     assert!(matches!(error, DataError::TimeIrregular { missing_rows: 2, .. }));
-    assert!(told(&error).contains("--repair"));
+    assert!(render(&error).contains("--repair"));
     let back = "time,force,position\n0,1,2\n0.1,1,2\n0.05,1,2\n";
     assert!(matches!(refused(back, &press(), 4, 1, "time"), DataError::TimeOrder { .. }));
     let twice = "time,force,position\n0,1,2\n0.1,1,2\n0.1,1,2\n";

@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_irregular_is_told_apart() {
+    fn what_is_irregular_is_distinguished() {
         let gap = [0.0, 0.1, 0.2, 0.5, 0.6, 0.7, 0.8];
         let Err(DataError::TimeIrregular { at, missing_rows, .. }) = clock("time", gap.into_iter())
         else {

@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn seeds_decide_and_settings_are_checked() {
+    fn seeds_decide_and_settings_are_validated() {
         assert_eq!(white(9, 1.0, 4).unwrap(), white(9, 1.0, 4).unwrap());
         assert_ne!(white(9, 1.0, 4).unwrap(), white(9, 1.0, 5).unwrap());
         for std in [-1.0, f64::NAN, f64::INFINITY] {

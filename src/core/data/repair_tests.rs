@@ -16,7 +16,7 @@ fn ramp(times: impl Iterator<Item = f64>) -> String {
 }
 
 #[test]
-fn a_regular_clock_is_left_alone() {
+fn a_regular_clock_is_left_unchanged() {
     let text = ramp((0..50).map(|k| f64::from(k) * 0.02));
     let (table, said) = repaired(&text);
     let before = Table::read(text.as_bytes(), "f").unwrap();

@@ -59,7 +59,7 @@ pub fn write_whole(
     if before.as_ref().is_some_and(|found| found.permissions().readonly()) {
         return Err(ErrorKind::PermissionDenied.into());
     }
-    let (part, file) = beside(&path)?;
+    let (part, file) = temporary_file(&path)?;
     let written = fill_and_flush(file, fill).and_then(|()| {
         if let Some(before) = before {
             fs::set_permissions(&part, before.permissions())?;
@@ -114,7 +114,7 @@ fn fill_and_flush(
 }
 
 /// A new file beside another, under a name that nothing has.
-fn beside(path: &Path) -> io::Result<(PathBuf, File)> {
+fn temporary_file(path: &Path) -> io::Result<(PathBuf, File)> {
     static NEXT: AtomicUsize = AtomicUsize::new(0);
     let name = path
         .file_name()

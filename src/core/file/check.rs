@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 
-use super::beside::gathered;
+use super::attached::gathered;
 use super::complaint::Complaint;
 use super::document::Document;
 use super::error::FileError;

@@ -56,7 +56,7 @@ pub enum Complaint {
     },
     /// A file beside a model file that cannot be read.
     #[error("the file {file} cannot be read ({reason})")]
-    Beside {
+    Attached {
         /// The file.
         file: String,
         /// What the system said.

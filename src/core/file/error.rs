@@ -238,7 +238,7 @@ fn complaint_hint(complaint: &Complaint) -> Option<String> {
         Complaint::Several { .. } => "keep one of them",
         Complaint::Nothing => "write the name of a model or an effect as a key of this table",
         Complaint::NotFinite { .. } => "leave a bound that does not exist out",
-        Complaint::Beside { .. } => "keep the file beside the model file, and write its name",
+        Complaint::Attached { .. } => "keep the file beside the model file, and write its name",
         Complaint::Elsewhere { .. } => {
             "keep it in the model file's folder or below: a model file opens nothing else"
         }

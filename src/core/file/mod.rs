@@ -10,7 +10,7 @@
 //! nearest known name where one was misspelt, and shows the line
 //! ([`FileError::pretty`]).
 
-mod beside;
+mod attached;
 mod check;
 mod complaint;
 mod document;

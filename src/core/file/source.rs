@@ -27,7 +27,7 @@ pub struct Spot {
 }
 
 /// Characters of a line that are shown at most.
-const SHOWN: usize = 100;
+const EXCERPT: usize = 100;
 
 impl Source {
     /// The place of some bytes; of more than one line the first is shown.
@@ -82,18 +82,19 @@ impl Spot {
         };
         // a window around the place, where the line is long
         let characters = self.line.chars().count();
-        let skipped = if characters > SHOWN { (column - 1).saturating_sub(SHOWN / 2) } else { 0 };
+        let skipped =
+            if characters > EXCERPT { (column - 1).saturating_sub(EXCERPT / 2) } else { 0 };
         let shown: String = self
             .line
             .chars()
             .skip(skipped)
-            .take(SHOWN)
+            .take(EXCERPT)
             .map(|c| if c.is_control() { ' ' } else { c })
             .collect();
         let before = if skipped > 0 { "..." } else { "" };
-        let after = if characters > skipped + SHOWN { "..." } else { "" };
+        let after = if characters > skipped + EXCERPT { "..." } else { "" };
         let indent = before.len() + column - 1 - skipped;
-        let width = self.width.clamp(1, SHOWN - (column - 1 - skipped).min(SHOWN - 1));
+        let width = self.width.clamp(1, EXCERPT - (column - 1 - skipped).min(EXCERPT - 1));
         let margin = " ".repeat(number.to_string().len());
         let mut text = String::new();
         // writing to a string cannot fail

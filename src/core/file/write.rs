@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Map, Value};
 
-use super::beside::put_beside;
+use super::attached::detached;
 use super::document::Format;
 use super::error::FileError;
 use super::lines;
@@ -78,7 +78,7 @@ pub fn save_with(system: &System, path: &Path, header: &[String]) -> Result<(), 
     let name = path.display().to_string();
     let text = || {
         let mut tables = tables(system)?;
-        let beside = put_beside(&mut tables, path);
+        let beside = detached(&mut tables, path);
         let text = match Format::of(path, "") {
             Format::Toml => lines::model_file(&tables, header),
             Format::Json => json(tables)?,

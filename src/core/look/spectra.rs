@@ -22,7 +22,7 @@ const INDEPENDENT: f64 = 0.947;
 /// Chance, over all lines, at which noise stands out, or unrelated signals are coherent.
 const LEVEL: f64 = 0.01;
 /// Lines on either side that a line is compared with.
-const BESIDE: usize = 12;
+const SURROUNDINGS: usize = 12;
 /// Inputs whose coherence together is looked at.
 const INPUTS: usize = 8;
 
@@ -177,7 +177,7 @@ impl Spectra {
                 continue;
             }
             // a Hann window spreads a line over its neighbours
-            let beside = (1..bins).filter(|i| (3..=BESIDE).contains(&i.abs_diff(k)));
+            let beside = (1..bins).filter(|i| (3..=SURROUNDINGS).contains(&i.abs_diff(k)));
             let mut others: Vec<f64> = beside.map(|i| density[i]).collect();
             others.sort_by(f64::total_cmp);
             let floor = others.get(others.len() / 2).copied().unwrap_or(f64::INFINITY);
@@ -186,7 +186,7 @@ impl Spectra {
                 (range.start.max(1)..range.end.min(bins)).map(|i| density[i]).fold(0.0, f64::max)
             };
             let (left, right) =
-                (side(k.saturating_sub(BESIDE)..k - 2), side(k + 3..k + BESIDE + 1));
+                (side(k.saturating_sub(SURROUNDINGS)..k - 2), side(k + 3..k + SURROUNDINGS + 1));
             if value > bound * floor && value > 4.0 * left.max(right) {
                 let width = 1.0 / (self.length as f64 * self.step);
                 let power: f64 = density[k - 2..=k + 2].iter().map(|v| (v - floor).max(0.0)).sum();

@@ -68,7 +68,7 @@ impl Levenberg {
     pub fn propose(&mut self) -> Vec<Vec<f64>> {
         match &self.phase {
             Phase::Start => vec![self.point.clone()],
-            Phase::Jacobian(steps) => self.beside(steps),
+            Phase::Jacobian(steps) => self.displaced(steps),
             Phase::Ladder(points, _) => points.clone(),
             Phase::Done => vec![],
         }
@@ -80,7 +80,7 @@ impl Levenberg {
         if !self.is_starting() || self.iterations >= self.settings.iterations {
             return vec![];
         }
-        self.beside(&self.differences())
+        self.displaced(&self.differences())
     }
 
     /// Whether the residuals at the start are wanted next.
@@ -89,7 +89,7 @@ impl Levenberg {
     }
 
     /// One point per unknown, moved by its step.
-    fn beside(&self, steps: &[f64]) -> Vec<Vec<f64>> {
+    fn displaced(&self, steps: &[f64]) -> Vec<Vec<f64>> {
         let moved = |(j, step): (usize, &f64)| {
             let mut point = self.point.clone();
             point[j] += step;

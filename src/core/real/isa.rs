@@ -5,8 +5,11 @@ use std::sync::OnceLock;
 /// The instruction set that block kernels are run with.
 ///
 /// The program is built for plain x86-64 (or any other processor) and picks wider
-/// kernels at run time. Results are the same to the last bit in all of them, because
-/// none fuses a multiplication with an addition behind the author's back.
+/// kernels at run time. Simulation, estimation and diagnosis give the same to the last bit in
+/// all of them, because no kernel of a [`Real`](super::Real) fuses a multiplication with an
+/// addition behind the author's back. Networks do fuse where the processor can: their weights
+/// differ in the last digits from one instruction set to another, never with the number of
+/// threads.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Isa {
     /// What every processor of the target has.

@@ -77,7 +77,7 @@ mod tests {
 
     /// Of two unknowns a record sees the sum; a wide prior holds each of them.
     #[test]
-    fn what_is_seen_stays_known_beside_what_is_not() {
+    fn what_is_seen_stays_known_whatever_is_not() {
         let mut seed = 9_u64;
         let mut noise = || {
             let mut uniform = || {

@@ -29,8 +29,8 @@ impl<R: EffectNumber> Memory<R> {
                         longest = longest.max(delay);
                     }
                 }
-                // no longer than ten million steps: beyond that the first value is held anyway
-                let steps = (longest / plan.step()).ceil().clamp(0.0, 1e7) as usize;
+                // room is taken as steps are made, so that an absurd delay costs nothing
+                let steps = (longest / plan.step()).ceil().clamp(0.0, 1e15) as usize;
                 Self::Delay(DelayLine::new(packs, steps))
             }
             _ => Self::None,

@@ -74,6 +74,9 @@ impl<R: LaneNumber> LagState<R> {
 }
 
 /// u(t - d), with the first value held before the start.
+///
+/// Its memory grows with the steps taken, up to its depth: a delay that is longer than the record
+/// takes no more than the record does.
 #[derive(Debug, Clone)]
 pub struct DelayLine<R> {
     /// Values at the starts of past steps, newest last written at `head`.
@@ -87,8 +90,7 @@ pub struct DelayLine<R> {
 impl<R: LaneNumber> DelayLine<R> {
     /// A line that can look `steps` integration steps back.
     pub fn new(packs: usize, steps: usize) -> Self {
-        let depth = steps + 3;
-        Self { ring: vec![R::constant(0.0); packs * depth], packs, depth, head: 0, filled: 0 }
+        Self { ring: vec![], packs, depth: steps.saturating_add(3), head: 0, filled: 0 }
     }
 
     pub fn restart(&mut self) {
@@ -97,8 +99,16 @@ impl<R: LaneNumber> DelayLine<R> {
 
     /// Makes room for one more step; call once before the packs are pushed.
     pub fn turn(&mut self) {
-        self.head = (self.head + 1) % self.depth;
-        self.filled = (self.filled + 1).min(self.depth);
+        if self.filled == self.depth {
+            self.head = (self.head + 1) % self.depth;
+            return;
+        }
+        self.head = self.filled;
+        self.filled += 1;
+        let needed = self.filled * self.packs;
+        if self.ring.len() < needed {
+            self.ring.resize(needed, R::constant(0.0));
+        }
     }
 
     /// Stores a pack's value at the start of the step and reads the three delayed values.
@@ -149,7 +159,9 @@ impl<R: LaneNumber> DelayLine<R> {
     /// The value `steps` starts ago, the oldest known one before the start.
     fn past(&self, pack: usize, lane: usize, steps: usize) -> f64 {
         let steps = steps.min(self.filled.saturating_sub(1)).min(self.depth - 1);
-        let slot = (self.head + self.depth - steps) % self.depth;
+        // while it is being filled, nothing wraps around
+        let slot =
+            if steps <= self.head { self.head - steps } else { self.head + self.depth - steps };
         self.ring[slot * self.packs + pack].lane(lane)
     }
 }
@@ -192,5 +204,47 @@ impl<R: LaneNumber> PlayState<R> {
         let value = self.trial(pack, width, u);
         self.value[pack] = value;
         value
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::real::{F64x8, Real};
+
+    /// Outputs of a line of a delay along 0, 1, 2, .., from the start of two segments.
+    fn along(delay: f64, steps: usize) -> (Vec<f64>, usize) {
+        let mut line = DelayLine::<F64x8>::new(1, delay.ceil() as usize);
+        let mut answers = vec![];
+        for _ in 0..2 {
+            line.restart();
+            for k in 0..steps {
+                line.turn();
+                let of = |value: f64| F64x8::constant(value);
+                answers.push(line.advance(0, of(delay), 1.0, [of(k as f64); 3], true)[0].lane(3));
+            }
+        }
+        (answers, line.ring.len())
+    }
+
+    #[test]
+    fn a_delay_of_steps_gives_the_past() {
+        for delay in [1.0, 2.0, 7.0] {
+            let (answers, _) = along(delay, 30);
+            let expected = (0..2).flat_map(|_| (0..30).map(|k| (f64::from(k) - delay).max(0.0)));
+            assert_eq!(answers, expected.collect::<Vec<_>>(), "{delay}");
+        }
+        // half a step more: the mean of two values
+        let (answers, _) = along(2.5, 30);
+        assert_eq!((answers[20], answers[50]), (17.5, 17.5));
+    }
+
+    #[test]
+    fn a_delay_longer_than_the_record_takes_no_more_room_than_the_record() {
+        let (answers, room) = along(1e15, 100);
+        assert!(answers.iter().all(|y| *y == 0.0));
+        assert_eq!(room, 100);
+        // and a short one no more than it needs
+        assert!(along(2.0, 100).1 <= 5);
     }
 }

@@ -59,6 +59,32 @@ pub struct Recorded {
     pub ramps: bool,
 }
 
+/// Integration steps that a recorded delay line may hold: what is exported keeps so many numbers
+/// from the start, however short its run.
+const MOST_DELAYED: f64 = 1e6;
+
+/// Refuses a delay whose line would be too long.
+fn fits_in_a_line(
+    index: usize,
+    placed: &super::Placed,
+    card: &crate::effect::EffectCard,
+    step: f64,
+) -> Result<(), SystemError> {
+    let Some(delay) = card.knobs.iter().find(|knob| !(knob.value / step <= MOST_DELAYED)) else {
+        return Ok(());
+    };
+    Err(SystemError::Value {
+        index,
+        effect: placed.effect.typetag_name().into(),
+        key: delay.name.to_string(),
+        found: delay.value.to_string(),
+        expected: format!(
+            "at most {} s, {MOST_DELAYED} steps of the integrator",
+            MOST_DELAYED * step
+        ),
+    })
+}
+
 impl System {
     /// One step of the simulation, recorded.
     ///
@@ -114,6 +140,9 @@ impl System {
             // faults of the data are no part of a simulation
             if card.mechanism == crate::effect::Mechanism::Data {
                 continue;
+            }
+            if card.mechanism == crate::effect::Mechanism::Delay {
+                fits_in_a_line(number, placed, &card, plan.step())?;
             }
             for knob in &card.knobs {
                 let name = format!(

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! Record -- signals --> scaled stretches -- hankel, subspace --> order, A, C
-//! A, C -- fit --> B, D, offset -- refine --> least simulation error -- form, told --> System
+//! A, C -- fit --> B, D, offset -- refine --> least simulation error -- form, outcome --> System
 //! ```
 
 mod baseline;
@@ -10,11 +10,11 @@ mod error;
 mod fit;
 mod form;
 mod hankel;
+mod outcome;
 mod refine;
 mod search;
 mod signals;
 mod subspace;
-mod told;
 
 use crate::data::Record;
 use crate::statistics::rms;
@@ -24,10 +24,10 @@ use crate::watch::Watch;
 pub use baseline::linear_baseline;
 pub use error::LinearError;
 use fit::{Fitted, Free};
+pub use outcome::{LinearParameter, Mode};
 use search::{Found, Search};
 use signals::Signals;
 use subspace::{MOST, Sight};
-pub use told::{LinearParameter, Mode};
 
 /// A number within so many standard errors of 0 is taken for 0.
 const SEEN: f64 = 3.0;
@@ -148,7 +148,7 @@ pub fn linear_with(
         return Err(LinearError::NoModel { record: source(), order: first });
     };
     watch.tell(0.7, "leaving out what is not there");
-    let (kept, numbers) = told_apart(&signals, &mut found, watch);
+    let (kept, numbers) = without_insignificant(&signals, &mut found, watch);
     let mut remarks = vec![];
     if found.mirrored > 0 {
         remarks.push("the start had poles outside of the unit circle; they were mirrored".into());
@@ -165,12 +165,12 @@ pub fn linear_with(
         ));
     }
     let longest = records.iter().map(Record::duration).fold(0.0, f64::max);
-    remarks.extend(told::integrates(&numbers.model, records[0].sampling_time, longest));
-    let system = told::system(&numbers.model, &records[0]);
+    remarks.extend(outcome::integrates(&numbers.model, records[0].sampling_time, longest));
+    let system = outcome::system(&numbers.model, &records[0]);
     let poles = numbers.model.poles().into_iter().filter(|p| p.1 >= 0.0);
     watch.tell(1.0, "done");
     Ok(LinearEstimate {
-        parameters: told::parameters(&system, &numbers),
+        parameters: outcome::parameters(&system, &numbers),
         system,
         order: found.order,
         singular_values: sight.singular_values.clone(),
@@ -184,8 +184,12 @@ pub fn linear_with(
 }
 
 /// Leaves out the offsets and entries of D that the records do not show, and fits again.
-fn told_apart(signals: &Signals, found: &mut Found, watch: &dyn Watch) -> (Fitted, told::Numbers) {
-    let numbers = told::numbers(signals, &found.fitted);
+fn without_insignificant(
+    signals: &Signals,
+    found: &mut Found,
+    watch: &dyn Watch,
+) -> (Fitted, outcome::Numbers) {
+    let numbers = outcome::numbers(signals, &found.fitted);
     let mut free = Free::all(signals.nu, signals.ny);
     for &(table, index, value, error) in &numbers.entries {
         let unseen = error.is_some_and(|e| value.abs() < SEEN * e);
@@ -211,7 +215,7 @@ fn told_apart(signals: &Signals, found: &mut Found, watch: &dyn Watch) -> (Fitte
     let (model, fitted, steps) = refine::refine(signals, start, &free, watch);
     found.steps += steps;
     let fitted = (model, fitted);
-    let mut numbers = told::numbers(signals, &fitted);
+    let mut numbers = outcome::numbers(signals, &fitted);
     // what was left out is 0 to the last bit
     for (kept, value) in free.offset.iter().zip(numbers.model.offset.iter_mut()) {
         *value = if *kept { *value } else { 0.0 };

@@ -8,7 +8,7 @@ use super::march::Room;
 use super::number::Number;
 use super::program::{Op, Place, Program, Rows};
 use super::rows::{Base, gather, scatter, two};
-use super::work::{TOGETHER, Work};
+use super::work::{BATCH, Work};
 use super::{Block, LfrError};
 
 /// An interconnection prepared for one precision and one value of its parameters; threads
@@ -98,7 +98,7 @@ impl<'a, E: Number> Engine<'a, E> {
         let rows = |count: usize| vec![Row::zero(); count];
         let slopes = self.parts.iter().map(|part| match part {
             Evaluator::Network(net) => {
-                rows(TOGETHER * (net.layout().units() + net.layout().outputs()))
+                rows(BATCH * (net.layout().units() + net.layout().outputs()))
             }
             Evaluator::Baseline(_) => vec![],
         });
@@ -210,7 +210,7 @@ impl<'a, E: Number> Engine<'a, E> {
             let before = work.frame(sample - 1);
             prefetch(&work.rows[before..before + work.stride]);
         }
-        let slot = TOGETHER - 1 - work.waiting;
+        let slot = BATCH - 1 - work.waiting;
         for op in program.ops.iter().rev() {
             self.step_back(work, base, op, slot);
         }
@@ -218,7 +218,7 @@ impl<'a, E: Number> Engine<'a, E> {
         next.copy_from_slice(&state[..program.states]);
         flush(next);
         work.waiting += 1;
-        if work.waiting == TOGETHER || sample == 0 {
+        if work.waiting == BATCH || sample == 0 {
             self.collect(work, sample);
         }
     }
@@ -300,8 +300,7 @@ impl<'a, E: Number> Engine<'a, E> {
             let rows = &work.rows[..];
             let x = Instants { rows, at: frame + z, stride };
             let h = Instants { rows, at: frame + at.h.start, stride };
-            let d =
-                Instants { rows: &work.slopes[block], at: (TOGETHER - steps) * per, stride: per };
+            let d = Instants { rows: &work.slopes[block], at: (BATCH - steps) * per, stride: per };
             net.collect(steps, x, h, d, &mut work.lines[block]);
         }
         work.waiting = 0;

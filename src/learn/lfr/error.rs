@@ -96,6 +96,16 @@ pub enum LfrError {
     /// A network that cannot be made.
     #[error(transparent)]
     Network(crate::network::NetworkError),
+    /// More signals than are held.
+    #[error("{what}: {found} are more than the {most} that are held")]
+    Size {
+        /// Which signals.
+        what: &'static str,
+        /// How many there may be.
+        most: usize,
+        /// How many there are.
+        found: usize,
+    },
     /// A vector of another length.
     #[error("{what}: {expected} values are needed, {found} were given")]
     Length {
@@ -136,6 +146,7 @@ impl Explain for LfrError {
                 Self::Baseline { .. } => "check the model's file",
                 Self::NothingLearned => "augment the state or the output equation, or add states",
                 Self::Network(error) => return error.hint(),
+                Self::Size { .. } => "check the model's file",
                 Self::Length { .. } => "ask the interconnection for its sizes",
             }
             .into(),

@@ -26,6 +26,9 @@ pub struct Interconnection {
     pub s: Matrix,
 }
 
+/// Signals of one kind at most: memory is taken for each before anything is simulated.
+const MOST: usize = 100_000;
+
 impl Interconnection {
     /// Everything that is wrong with the interconnection, loops included.
     ///
@@ -33,6 +36,10 @@ impl Interconnection {
     ///
     /// The first fault found.
     pub fn check(&self) -> Result<(), LfrError> {
+        let sizes = [("states", self.states), ("inputs", self.inputs), ("outputs", self.outputs)];
+        if let Some((what, found)) = sizes.into_iter().find(|(_, found)| *found > MOST) {
+            return Err(LfrError::Size { what, most: MOST, found });
+        }
         for (b, block) in self.blocks.iter().enumerate() {
             match block {
                 Block::Network(learned) => learned.check()?,
@@ -48,6 +55,10 @@ impl Interconnection {
                             `lfr::Sampled` makes a model of whole samples of both"
                             .into();
                         return Err(LfrError::Baseline { block: b, reason });
+                    }
+                    // how it is sampled and integrated
+                    if let Err(error) = baseline.system.plan(baseline.sampling_time) {
+                        return Err(LfrError::Baseline { block: b, reason: error.to_string() });
                     }
                     let count = baseline.sizes().theta;
                     if baseline.theta.as_ref().is_some_and(|theta| theta.len() != count) {

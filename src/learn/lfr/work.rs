@@ -7,7 +7,7 @@ use super::number::Number;
 
 /// Time steps whose weight gradients are gathered together: long enough to pay for loading
 /// and storing the partial sums, short enough for the nearest cache.
-pub(crate) const TOGETHER: usize = 8;
+pub(crate) const BATCH: usize = 8;
 
 /// Rows of all samples of a stretch of time, adjoints, and gradients.
 pub(crate) struct Work<E: Number> {
@@ -26,7 +26,7 @@ pub(crate) struct Work<E: Number> {
     /// Time of the present sample, s.
     pub time: Row<E>,
     pub adjoints: Vec<Row<E>>,
-    /// Adjoints inside the networks, for [`TOGETHER`] samples each.
+    /// Adjoints inside the networks, for [`BATCH`] samples each.
     pub slopes: Vec<Vec<Row<E>>>,
     /// Samples whose slopes are waiting.
     pub waiting: usize,

@@ -9,8 +9,8 @@ per_pack! {
         for row in rows {
             // the length of an array has to be known here
             match E::BLOCK / P::N {
-                8 => tanh_together::<P, 8>(row),
-                _ => tanh_together::<P, 16>(row),
+                8 => tanh_rows::<P, 8>(row),
+                _ => tanh_rows::<P, 16>(row),
             }
         }
     }
@@ -18,7 +18,7 @@ per_pack! {
 
 /// The same for one row, `K` packs at a time.
 #[inline(always)]
-fn tanh_together<P: Pack, const K: usize>(row: &mut Row<P::Number>) {
+fn tanh_rows<P: Pack, const K: usize>(row: &mut Row<P::Number>) {
     debug_assert_eq!(P::Number::BLOCK % (K * P::N), 0, "no pack is left out");
     let mut at = 0;
     while at + K * P::N <= P::Number::BLOCK {

@@ -55,17 +55,61 @@ pub struct State {
     pub history: Vec<Epoch>,
 }
 
+/// Counters beyond this are no count of steps: whole numbers up to here are exact as `f64`, and none
+/// overflows by counting on.
+const MOST: u64 = 1 << 53;
+
 impl State {
-    /// Reads a checkpoint, if there is one.
-    pub fn read(path: &Path, fingerprint: u64) -> Result<Option<Self>, TrainError> {
-        let fault = |reason: String| TrainError::File { path: path.display().to_string(), reason };
+    /// What makes it no state of a run with `len` parameters between two steps; none where it is one.
+    fn fault(&self, len: usize) -> Option<String> {
+        let best = self.best.as_ref().map_or(len, |(_, theta, _)| theta.len());
+        let lengths = [
+            ("theta", self.theta.len()),
+            ("before", self.before.len()),
+            ("adam.first", self.adam.first.len()),
+            ("adam.second", self.adam.second.len()),
+            ("best", best),
+        ];
+        if let Some((key, found)) = lengths.into_iter().find(|(_, found)| *found != len) {
+            return Some(format!("`{key}` has {found} numbers, and the model {len} parameters"));
+        }
+        // epochs are counted from the start, 0, and each leaves one entry
+        let counted = self.history.iter().enumerate().all(|(k, epoch)| epoch.epoch == k);
+        if !counted || self.epoch.checked_add(1) != Some(self.history.len()) {
+            return Some(format!("`history` does not go from epoch 0 to {}", self.epoch));
+        }
+        if let Some((.., epoch)) = self.best.as_ref().filter(|(.., epoch)| *epoch > self.epoch) {
+            return Some(format!("`best` is of epoch {epoch}, and {} are done", self.epoch));
+        }
+        let counts = [
+            ("step", self.step as u64),
+            ("legs", self.legs as u64),
+            ("adam.step", self.adam.step),
+            ("rolled_back", self.rolled_back as u64),
+            ("in_a_row", self.in_a_row as u64),
+            ("rollbacks", self.rollbacks as u64),
+        ];
+        let absurd = counts.into_iter().find(|(_, count)| *count > MOST);
+        absurd.map(|(key, count)| format!("`{key}` is {count}, which is no count of steps"))
+    }
+
+    /// Reads a checkpoint of a run with `len` parameters, if there is one.
+    pub fn read(path: &Path, fingerprint: u64, len: usize) -> Result<Option<Self>, TrainError> {
+        let unread = |reason: String, at| {
+            let path = path.display().to_string();
+            TrainError::File { path, reason, at }
+        };
+        let fault = |reason: String| unread(reason, None);
         let text = match read_regular(path) {
             Ok(text) => text,
             Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(fault(error.to_string())),
         };
-        let state: Self =
-            serde_json::from_slice(&text).map_err(|error| fault(error.to_string()))?;
+        let state: Self = serde_json::from_slice(&text)
+            .map_err(|error| unread(error.to_string(), Some((error.line(), error.column()))))?;
+        if let Some(reason) = state.fault(len) {
+            return Err(fault(reason));
+        }
         if state.fingerprint != fingerprint {
             let (path, what) = (path.display().to_string(), "settings, model or records");
             return Err(TrainError::OtherRun { path, what });

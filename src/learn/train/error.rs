@@ -2,7 +2,7 @@
 
 use crate::disk::write_hint;
 use crate::encoder::EncoderError;
-use crate::fault::{Explain, Kind};
+use crate::fault::{Explain, Kind, Place};
 use crate::lfr::LfrError;
 use crate::optimise::OptimiseError;
 
@@ -82,6 +82,8 @@ pub enum TrainError {
         path: String,
         /// What the system says.
         reason: String,
+        /// Line and column in the file, from 1, where they are known.
+        at: Option<(usize, usize)>,
     },
     /// A file cannot be written.
     #[error("{path}: cannot be written ({source})")]
@@ -113,6 +115,29 @@ impl Explain for TrainError {
             Self::Encoder(error) => error.kind(),
             Self::Optimiser(error) => error.kind(),
             _ => Kind::Call,
+        }
+    }
+
+    fn place(&self) -> Place {
+        let key = |key: &str| Place { key: Some(key.into()), ..Place::default() };
+        match self {
+            Self::Setting { name, .. } => key(name),
+            Self::Encoder(error) if error.place() == Place::default() => key("encoder"),
+            Self::Encoder(error) => error.place(),
+            Self::Model(LfrError::Network(_)) => key("structure.hidden"),
+            Self::TooShort { length, reach, .. } => {
+                key(if reach >= length { "encoder" } else { "length" })
+            }
+            Self::File { path, at, .. } => Place {
+                file: Some(path.clone()),
+                line: at.map(|(line, _)| line),
+                column: at.map(|(_, column)| column),
+                key: None,
+            },
+            Self::Write { path, .. } | Self::OtherRun { path, .. } => {
+                Place { file: Some(path.clone()), ..Place::default() }
+            }
+            _ => Place::default(),
         }
     }
 

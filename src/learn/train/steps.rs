@@ -49,12 +49,12 @@ impl<'a> Steps<'a> {
         let mut units = Units::of(&start.model, start.encoder.weights().len(), trainer.penalty)
             .sparse(&trainer.sparse, &start.groups())
             .posed(trainer.posed(start)?);
+        let theta = units.enter(&start.parameters());
         let known = match &trainer.checkpoint {
-            Some(checkpoint) => State::read(&checkpoint.path, fingerprint)?,
+            Some(checkpoint) => State::read(&checkpoint.path, fingerprint, theta.len())?,
             None => None,
         };
         let resumed = known.as_ref().map(|state| state.epoch);
-        let theta = units.enter(&start.parameters());
         let fresh = State {
             fingerprint,
             epoch: 0,
@@ -80,7 +80,7 @@ impl<'a> Steps<'a> {
         let mut ended = Ended::Budget;
         if self.state.history.is_empty() {
             self.close(0, None)?;
-            if self.tell(follow) {
+            if self.report(follow) {
                 return self.end(Ended::Asked);
             }
         }
@@ -112,7 +112,7 @@ impl<'a> Steps<'a> {
             (self.state.epoch, self.state.step, self.state.loss) = (self.state.epoch + 1, 0, 0.0);
             self.close(self.state.epoch, Some(mean))?;
             self.save(self.state.epoch == self.trainer.epochs)?;
-            if self.tell(follow) {
+            if self.report(follow) {
                 self.save(true)?;
                 return self.end(Ended::Asked);
             }
@@ -160,7 +160,7 @@ impl<'a> Steps<'a> {
         state.legs += usize::from(finishing);
         self.close(self.state.epoch, Some(done.loss))?;
         self.save(true)?;
-        Ok(self.tell(follow))
+        Ok(self.report(follow))
     }
 
     /// One step, or one step back where the last one led to no finite loss.
@@ -232,8 +232,8 @@ impl<'a> Steps<'a> {
         Ok(())
     }
 
-    /// Tells the last epoch; whether training should end.
-    fn tell(&self, follow: &mut dyn Follow) -> bool {
+    /// Reports the last epoch; whether training should end.
+    fn report(&self, follow: &mut dyn Follow) -> bool {
         self.state.history.last().is_some_and(|epoch| follow.on_epoch(epoch).is_break())
     }
 

@@ -203,7 +203,11 @@ impl Trainer {
     ) -> Result<u64, TrainError> {
         let own = Self { epochs: 0, threads: 1, checkpoint: None, patience: None, ..self.clone() };
         let text = |what: Result<String, serde_json::Error>| {
-            what.map_err(|e| TrainError::File { path: "settings".into(), reason: e.to_string() })
+            what.map_err(|e| TrainError::File {
+                path: "settings".into(),
+                reason: e.to_string(),
+                at: None,
+            })
         };
         let mut print = Fingerprint::new()
             .bytes(text(serde_json::to_string(&own))?.as_bytes())

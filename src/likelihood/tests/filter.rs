@@ -200,7 +200,7 @@ fn slopes_of_the_likelihood_are_those_of_differences() {
 }
 
 #[test]
-fn an_isolated_spike_moves_nothing_and_is_told() {
+fn an_isolated_spike_moves_nothing_and_is_listed() {
     let system = system(OSCILLATOR);
     let sizes = Sizes { white: vec![0.5], measurement: vec![0.02], ..Sizes::default() };
     let clean = simulate(&system, &excitation(400, 0.05, 1.0, 5), &sizes, 7);

@@ -33,7 +33,7 @@ fn a_white_force_and_sensor_noise_are_found() {
 }
 
 #[test]
-fn white_sensor_noise_is_left_alone() {
+fn white_sensor_noise_is_left_unchanged() {
     let sizes = Sizes { measurement: vec![0.05], ..Sizes::default() };
     let record = simulate(&system(OSCILLATOR), &excitation(3000, 0.05, 1.0, 3), &sizes, 4);
     let (_, fitted) = fitted(OSCILLATOR, record);
@@ -43,7 +43,7 @@ fn white_sensor_noise_is_left_alone() {
 }
 
 #[test]
-fn a_sensor_that_wanders_is_told_from_a_disturbed_plant() {
+fn a_sensor_that_wanders_is_distinguished_from_a_disturbed_plant() {
     let sizes = Sizes { measurement: vec![0.01], wander: vec![0.004], ..Sizes::default() };
     let record = simulate(&system(OSCILLATOR), &excitation(3000, 0.05, 1.0, 5), &sizes, 6);
     let (_, fitted) = fitted(OSCILLATOR, record);

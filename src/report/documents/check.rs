@@ -10,7 +10,7 @@ use crate::diagnose::Checked;
 /// # Errors
 ///
 /// If a cause has no JSON, which only happens to keys that are no text.
-pub fn checked(checked: &Checked, level: f64) -> Result<Value, serde_json::Error> {
+pub fn goodness_of_fit(checked: &Checked, level: f64) -> Result<Value, serde_json::Error> {
     let faults = checked.data_faults.iter().map(cause_document).collect::<Result<Vec<_>, _>>()?;
     let mut document = json!({
         "schema": 1,

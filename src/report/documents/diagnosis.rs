@@ -53,7 +53,7 @@ struct SaidWithdrawn<'a> {
 
 /// What one record shows on its own.
 #[derive(Debug, Serialize)]
-struct SaidAlone<'a> {
+struct SingleRecord<'a> {
     record: &'a str,
     cause: SaidCause<'a>,
 }
@@ -86,7 +86,7 @@ impl Serialize for Said<'_> {
         if !finding.alone.is_empty() {
             let alone = finding.alone.iter();
             let alone: Vec<_> =
-                alone.map(|a| SaidAlone { record: &a.record, cause: said(&a.cause) }).collect();
+                alone.map(|a| SingleRecord { record: &a.record, cause: said(&a.cause) }).collect();
             map.serialize_entry("alone", &alone)?;
         }
         map.serialize_entry("remarks", &sentences::notes(finding))?;

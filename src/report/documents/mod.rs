@@ -10,7 +10,7 @@ mod fit;
 mod look;
 mod simulate;
 
-pub use check::checked;
+pub use check::goodness_of_fit;
 pub use diagnosis::{Beside, Document, cause_document};
 pub use estimate::{estimated, linear};
 pub use fit::{Fitted, fitted, scores};

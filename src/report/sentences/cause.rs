@@ -71,12 +71,12 @@ fn body(cause: &Cause) -> String {
             });
             format!("Parameter {} drifts by {rate}{from}", cause.into)
         }
-        _ => format!("{}{}{}", place(cause), size(cause), beside(cause)),
+        _ => format!("{}{}{}", place(cause), size(cause), other_laws(cause)),
     }
 }
 
 /// The other laws of a sum: `, together with viscous friction, 0.12 N s/m more than the model has`.
-fn beside(cause: &Cause) -> String {
+fn other_laws(cause: &Cause) -> String {
     let of_part = |part: &LawPart| {
         let own = Cause {
             effect: part.effect.clone(),

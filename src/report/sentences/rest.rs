@@ -32,16 +32,16 @@ pub fn look_alikes(finding: &Finding, cause: &Cause) -> Option<String> {
     if cause.indistinguishable.is_empty() {
         return None;
     }
-    let others = cause.indistinguishable.iter().map(|other| alternative(finding, other));
+    let others = cause.indistinguishable.iter().map(|other| alternative(&finding.held, other));
     let others: Vec<String> = others.collect();
     Some(format!("  the data cannot tell {} from: {}", super::place_of(cause), others.join("; ")))
 }
 
-fn alternative(finding: &Finding, other: &Alternative) -> String {
+pub(super) fn alternative(held: &[String], other: &Alternative) -> String {
     let name = phrase(&other.title, &other.effect, &other.into, other.of.as_deref(), other.site);
     let sure = other.probability.map_or_else(String::new, |p| format!(" ({})", percent(p)));
     // what the model holds may be wrong as well
-    let held = if finding.held.contains(&other.into) { ", which is held as right" } else { "" };
+    let held = if held.contains(&other.into) { ", which is held as right" } else { "" };
     format!("{name}{sure}{held}")
 }
 
@@ -99,8 +99,15 @@ fn over_noise(ratio: f64) -> String {
 
 /// That faults of the data are not all that is wrong, where they are not.
 fn data_fault(finding: &Finding) -> Option<String> {
-    let only = finding.verdict == Verdict::DataFault;
-    let open = finding.left.values().any(|left| !left.white);
+    not_only_data(finding.verdict, finding.left.values())
+}
+
+pub(super) fn not_only_data<'a>(
+    verdict: Verdict,
+    mut left: impl Iterator<Item = &'a Left>,
+) -> Option<String> {
+    let only = verdict == Verdict::DataFault;
+    let open = left.any(|left| !left.white);
     (only && open).then(|| {
         "The data are at fault, and that is not all: what is left is no white noise either.".into()
     })
@@ -120,7 +127,11 @@ pub fn record(facts: &RecordFacts) -> String {
 
 /// What was supposed right.
 pub fn held(finding: &Finding) -> Option<String> {
-    let names = finding.held.join(", ");
+    supposed_right(&finding.held)
+}
+
+pub(super) fn supposed_right(held: &[String]) -> Option<String> {
+    let names = held.join(", ");
     (!names.is_empty()).then(|| {
         format!(
             "Supposed right, because they are held: {names}. If one of them is wrong or drifts, that is \

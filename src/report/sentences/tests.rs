@@ -230,6 +230,35 @@ fn what_is_left_and_what_was_supposed() {
 }
 
 #[test]
+fn what_is_fixed_is_named_and_may_be_the_cause() {
+    assert_eq!(rest::supposed_right(&[]), None);
+    let text = rest::supposed_right(&["m".into(), "l".into()]).unwrap();
+    assert!(text.contains("held: m, l.") && text.contains("wrong or drifts"), "{text}");
+    let drift = Alternative {
+        effect: "drift".into(),
+        into: "m".into(),
+        of: Some("time".into()),
+        error_removed: 0.5,
+        probability: Some(0.25),
+        title: "A drift".into(),
+        site: Site::Drift,
+    };
+    let held = rest::alternative(&["m".into()], &drift);
+    assert_eq!(held, "a drift of m (25 %), which is held as right");
+    assert_eq!(rest::alternative(&[], &drift), "a drift of m (25 %)");
+}
+
+#[test]
+fn data_at_fault_do_not_hide_that_the_model_is_wrong_too() {
+    let left = |white| Left { ratio_to_noise: Some(5.0), white, score: 1756.0 };
+    let (open, white) = ([left(true), left(false)], [left(true)]);
+    let text = rest::not_only_data(Verdict::DataFault, open.iter()).unwrap();
+    assert!(text.contains("that is not all"), "{text}");
+    assert_eq!(rest::not_only_data(Verdict::DataFault, white.iter()), None);
+    assert_eq!(rest::not_only_data(Verdict::CausesFound, open.iter()), None);
+}
+
+#[test]
 fn notes_are_said() {
     let all = Note::NoExcitation { inputs: vec!["torque".into()], all: true };
     assert!(

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::StudyError;
 use crate::diagnose::{Cause, Finding, Value, Verdict};
+use crate::file::read_regular;
 
 /// Version of the form.
 pub(super) const SCHEMA: u32 = 1;
@@ -194,10 +195,12 @@ impl Answers {
         }
         let mut all: Vec<(Answer, std::path::PathBuf)> = vec![];
         for file in files {
-            let text = std::fs::read_to_string(&file).map_err(|e| StudyError::merge(&file, e))?;
-            let reader = &mut serde_json::Deserializer::from_str(&text);
-            let answers: Self = serde_path_to_error::deserialize(reader)
-                .map_err(|e| StudyError::merge(&file, format!("`{}`: {}", e.path(), e.inner())))?;
+            let text = read_regular(&file).map_err(|e| StudyError::merge(&file, e))?;
+            let reader = &mut serde_json::Deserializer::from_slice(&text);
+            let read: Result<Self, _> = serde_path_to_error::deserialize(&mut *reader);
+            let answers =
+                read.map_err(|e| StudyError::unread(&file, Some(e.path().to_string()), e.inner()))?;
+            reader.end().map_err(|e| StudyError::unread(&file, None, &e))?;
             if answers.schema != SCHEMA {
                 let reason = format!("`schema` is {}, and {SCHEMA} is read", answers.schema);
                 return Err(StudyError::merge(&file, reason));

@@ -27,7 +27,8 @@ pub struct Bin {
     /// Upper end.
     pub to: f64,
     /// Mean of the probabilities in it.
-    pub told: Option<f64>,
+    #[serde(rename = "told")]
+    pub probability: Option<f64>,
     /// How often names in it were right.
     pub right: Share,
 }
@@ -110,7 +111,12 @@ impl Names {
                 told.iter().filter(|(p, _)| from <= *p && (*p < to || i + 1 == BINS)).collect();
             let sum: f64 = inside.iter().map(|(p, _)| p).sum();
             let mean = (!inside.is_empty()).then(|| sum / inside.len() as f64);
-            Bin { from, to, told: mean, right: Share::of(inside.iter().map(|(_, right)| *right)) }
+            Bin {
+                from,
+                to,
+                probability: mean,
+                right: Share::of(inside.iter().map(|(_, right)| *right)),
+            }
         };
         Self {
             count: told.len(),
@@ -152,7 +158,7 @@ fn ranks(marks: &[&Marks]) -> (Ranks, Ranks) {
 }
 
 fn names(marks: &[&Marks]) -> Names {
-    Names::of(&marks.iter().flat_map(|m| m.told.iter().copied()).collect::<Vec<_>>())
+    Names::of(&marks.iter().flat_map(|m| m.probabilities.iter().copied()).collect::<Vec<_>>())
 }
 
 impl Row {
@@ -213,7 +219,7 @@ mod tests {
         assert!((names.brier.unwrap() - 1.0 / 6.0).abs() < 0.01, "{:?}", names.brier);
         for bin in &names.bins {
             let [low, high] = bin.right.interval95;
-            let told = bin.told.unwrap();
+            let told = bin.probability.unwrap();
             assert!(low - 0.02 < told && told < high + 0.02, "{bin:?}");
         }
         let z: Vec<f64> = (0..5000).map(|_| random.normal()).collect();

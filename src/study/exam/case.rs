@@ -183,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn an_effect_is_not_drawn_beside_its_special_case() {
+    fn an_effect_is_not_drawn_with_its_special_case() {
         let of_speed = |effect: &str| format!("{{ into = \"f\", of = \"v\", {effect} }}");
         let dry = of_speed("effect.coulomb_friction = { level = -0.1, width = 0.02 }");
         let bump = of_speed(

@@ -8,12 +8,12 @@ use super::marks::removed;
 use super::{Answer, Answers, CaseTruth, ExamResult, Marks};
 use crate::StudyError;
 use crate::data::{Step, Table, Want};
-use crate::file::load;
+use crate::file::{load, read_regular};
 
 /// Reads a JSON file.
 fn read<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, StudyError> {
-    let text = std::fs::read_to_string(path).map_err(|error| StudyError::merge(path, error))?;
-    serde_json::from_str(&text).map_err(|error| StudyError::merge(path, error))
+    let text = read_regular(path).map_err(|error| StudyError::merge(path, error))?;
+    serde_json::from_slice(&text).map_err(|error| StudyError::unread(path, None, &error))
 }
 
 impl Written {

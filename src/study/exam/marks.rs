@@ -49,7 +49,8 @@ pub struct Marks {
     /// Laws of the causes, short; faults of the data left out.
     pub found: Vec<String>,
     /// The others of the first one's set, short.
-    pub beside: Vec<String>,
+    #[serde(rename = "beside")]
+    pub alternatives: Vec<String>,
     /// The verdict.
     pub verdict: String,
     /// Share of the mean square removed on a third record without noise; none with nothing
@@ -61,7 +62,8 @@ pub struct Marks {
     pub gain_covered: Option<bool>,
     /// Every probability that was given to a name, and whether the name was right.
     #[serde(default)]
-    pub told: Vec<(f64, bool)>,
+    #[serde(rename = "told")]
+    pub probabilities: Vec<(f64, bool)>,
     /// Estimated less true coefficients of exact hits, in standard errors.
     #[serde(default)]
     pub standardised: Vec<f64>,
@@ -76,7 +78,7 @@ fn headline(cause: &Answered) -> String {
     short(&cause.effect, &cause.into, cause.of.as_deref())
 }
 
-fn beside(cause: &Answered) -> Vec<String> {
+fn alternatives(cause: &Answered) -> Vec<String> {
     let others = cause.indistinguishable.iter();
     others.map(|other| short(&other.effect, &other.into, other.of.as_deref())).collect()
 }
@@ -91,7 +93,7 @@ fn laws(cause: &Answered) -> Vec<String> {
 fn hit(cause: &Answered, name: &str) -> Hit {
     match laws(cause).iter().any(|law| law == name) {
         true => Hit::Exact,
-        false if beside(cause).iter().any(|other| other == name) => Hit::InSet,
+        false if alternatives(cause).iter().any(|other| other == name) => Hit::InSet,
         false => Hit::Missed,
     }
 }
@@ -126,13 +128,13 @@ fn standardised(cause: &Answered, truth: &Hidden) -> Vec<f64> {
 }
 
 /// Every probability that was given to a name, and whether that name was hidden.
-fn told(causes: &[&Answered], hidden: &[String]) -> Vec<(f64, bool)> {
+fn probabilities(causes: &[&Answered], hidden: &[String]) -> Vec<(f64, bool)> {
     let is_hidden = |name: &String| hidden.contains(name);
     let mut all = vec![];
     for cause in causes {
         // a sum is right where one of its laws is
         all.extend(cause.probability.map(|p| (p, laws(cause).iter().any(is_hidden))));
-        let others = cause.indistinguishable.iter().zip(beside(cause));
+        let others = cause.indistinguishable.iter().zip(alternatives(cause));
         all.extend(others.filter_map(|(o, name)| Some((o.probability?, is_hidden(&name)))));
     }
     all
@@ -141,7 +143,7 @@ fn told(causes: &[&Answered], hidden: &[String]) -> Vec<(f64, bool)> {
 impl Marks {
     /// Names in the first cause's set, itself among them; 0 if there is no cause.
     pub fn set_size(&self) -> usize {
-        self.found.first().map_or(0, |_| 1 + self.beside.len())
+        self.found.first().map_or(0, |_| 1 + self.alternatives.len())
     }
 
     /// Marks an answer; `removed` is the share of the mean square that its extended model removes
@@ -168,14 +170,14 @@ impl Marks {
             system: truth.system.clone(),
             first: causes.first().is_some_and(|c| hidden.iter().any(|n| hit(c, n) > Hit::Missed)),
             found: causes.iter().flat_map(|c| laws(c)).collect(),
-            beside: causes.first().map_or(vec![], |c| beside(c)),
+            alternatives: causes.first().map_or(vec![], |c| alternatives(c)),
             verdict: answer.verdict.clone().unwrap_or_default(),
             gain_covered: gain.map(|(share, [low, high])| low <= share && share <= high),
             gain_standardised: gain.and_then(|(share, [low, high])| {
                 let z = (0.5 * (low + high) - share) / ((high - low) / (2.0 * WIDE));
                 z.is_finite().then_some(z)
             }),
-            told: told(&causes, &hidden),
+            probabilities: probabilities(&causes, &hidden),
             covered: standardised.iter().map(|z| z.abs() <= WIDE).collect(),
             standardised,
             removed,

@@ -34,6 +34,7 @@ pub use tally::Tally;
 pub use truth::{CaseTruth, Hidden};
 
 use super::StudyError;
+use super::generate::fits;
 use crate::data::Excitation;
 
 /// What is asked in an exam: what a configuration file holds. Paths are seen from that file.
@@ -174,7 +175,34 @@ impl Machine {
     }
 }
 
+/// Records of one machine at most.
+const MOST_RECORDS: usize = 1000;
+/// Cases of an exam at most.
+const MOST_CASES: u64 = 1_000_000;
+
 impl Exam {
+    /// An upper bound of the number of cases, without making them.
+    fn cases_at_most(&self) -> u64 {
+        let product = |all: &[usize]| all.iter().fold(1, |n: u64, &m| n.saturating_mul(m as u64));
+        let conditions = product(&[
+            self.samples.len(),
+            self.snr_db.len(),
+            self.noise_pole.len() + self.noise.len(),
+            self.process_noise.len(),
+            self.input_noise.len(),
+            self.onset.len(),
+            self.records.len(),
+            self.parameter_error.len(),
+        ]);
+        let of = |machine: &Machine| {
+            let own = 2 * machine.hidden.len() + machine.outside.len();
+            let hidden = own.saturating_add(self.pairs).saturating_add(self.triples);
+            let each = product(&[self.sizes.len(), hidden]).saturating_add(self.nulls as u64);
+            each.saturating_mul(self.seeds).saturating_mul(conditions)
+        };
+        self.systems.iter().fold(0, |sum: u64, machine| sum.saturating_add(of(machine)))
+    }
+
     /// Checks what can be checked without the files.
     ///
     /// # Errors
@@ -210,10 +238,21 @@ impl Exam {
         if self.samples.is_empty() || self.samples.contains(&0) {
             return Err(StudyError::setting("samples", "empty or 0", "numbers of samples"));
         }
+        self.samples.iter().try_for_each(|&samples| fits("samples", samples))?;
+        self.systems.iter().try_for_each(|machine| fits("transient", machine.transient))?;
+        if let Some(&records) = self.records.iter().find(|&&records| records > MOST_RECORDS) {
+            let expected = format!("at most {MOST_RECORDS} of one machine");
+            return Err(StudyError::setting("records", records, &expected));
+        }
         for (key, empty) in [("systems", self.systems.is_empty()), ("seeds", self.seeds == 0)] {
             if empty {
                 return Err(StudyError::setting(key, "empty", "at least one"));
             }
+        }
+        let cases = self.cases_at_most();
+        if cases > MOST_CASES {
+            let expected = format!("at most {MOST_CASES} cases in all, not {cases}");
+            return Err(StudyError::setting("seeds", self.seeds, &expected));
         }
         for (i, machine) in self.systems.iter().enumerate() {
             if self.systems[..i].iter().any(|other| other.name() == machine.name()) {

@@ -6,6 +6,9 @@ use std::path::{Path, PathBuf};
 use super::{Kind, Marks, Tally};
 use crate::StudyError;
 
+/// Numbers of missing cases in one message at most.
+const MISSING: usize = 20;
+
 /// All marks of an exam, in the order of its cases.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExamResult {
@@ -34,6 +37,7 @@ impl ExamResult {
         }
         let missing: Vec<String> = (1..=first.of)
             .filter(|n| marks.binary_search_by_key(n, |m| m.case.number).is_err())
+            .take(MISSING)
             .map(|n| n.to_string())
             .collect();
         if !missing.is_empty() {

@@ -7,9 +7,9 @@
 //! file of its own, so that the work can be shared among processes as that of a study.
 
 mod noise;
+mod rehearsed;
 mod scene;
 mod section;
-mod told;
 mod transplant;
 
 use std::path::{Path, PathBuf};
@@ -27,7 +27,7 @@ use crate::train::Fingerprint;
 use crate::watch::Watch;
 use scene::{Question, Scene, Stage};
 
-pub use told::Rehearsed;
+pub use rehearsed::Rehearsed;
 
 /// Shares of the rehearsals: nothing hidden, as found, look-alikes; sizes get the rest.
 const SHARES: [f64; 3] = [0.3, 0.25, 0.15];
@@ -180,7 +180,7 @@ impl<'a> Rehearsal<'a> {
         let path = path_of(folder, number);
         let Ok(text) = std::fs::read_to_string(&path) else { return Ok(None) };
         let outcome: Outcome =
-            serde_json::from_str(&text).map_err(|error| StudyError::merge(&path, error))?;
+            serde_json::from_str(&text).map_err(|error| StudyError::unread(&path, None, &error))?;
         if outcome.fingerprint != self.fingerprint {
             return Err(StudyError::merge(&path, "a rehearsal of another record, model or seed"));
         }
@@ -192,7 +192,7 @@ impl<'a> Rehearsal<'a> {
     /// # Errors
     ///
     /// If a file is of other rehearsals.
-    pub fn told(&self, count: usize, folder: &Path) -> Result<Rehearsed, StudyError> {
+    pub fn summary(&self, count: usize, folder: &Path) -> Result<Rehearsed, StudyError> {
         let folder = folder.join("rehearsal");
         let mut outcomes = vec![];
         for (number, scene) in self.plan(count).into_iter().enumerate() {

@@ -1,6 +1,6 @@
 //! Rehearsals in words, and as a part of a report.
 
-use super::told::{Rehearsed, Smallest};
+use super::rehearsed::{Rehearsed, Smallest};
 use crate::digits::number;
 use crate::report::Page;
 use crate::share::Share;

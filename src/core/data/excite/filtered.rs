@@ -145,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_are_checked() {
+    fn settings_are_validated() {
         let good = FilteredNoise { cutoff: 1.0, order: 2, rms: 1.0 };
         assert!(good.generate(0, 0.1, 0).unwrap().is_empty());
         for cutoff in [0.0, 5.0, -1.0, f64::NAN, 1e-6] {

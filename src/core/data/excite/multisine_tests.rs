@@ -59,7 +59,7 @@ fn the_crest_factor_falls() {
 }
 
 #[test]
-fn settings_are_checked_by_name() {
+fn settings_are_validated_by_name() {
     use crate::fault::Explain;
     let good = multisine(Lines::Full { from: 1, to: None });
     let key = |settings: Multisine| {

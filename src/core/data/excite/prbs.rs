@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_are_checked() {
+    fn settings_are_validated() {
         let good = Prbs { amplitude: 1.0, clock: 1, sequence: Sequence::Telegraph {} };
         assert!(Prbs { amplitude: -1.0, ..good.clone() }.generate(9, 0.1, 0).is_err());
         assert!(Prbs { clock: 0, ..good.clone() }.generate(9, 0.1, 0).is_err());

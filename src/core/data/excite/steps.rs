@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn settings_are_checked() {
+    fn settings_are_validated() {
         let good = Steps { low: 0.0, high: 1.0, hold_min: 1, hold_max: 2 };
         for bad in [
             Steps { low: 2.0, ..good.clone() },

@@ -66,14 +66,14 @@ impl Sampled {
     ///
     /// If an effect does not fit the model, or a delay is too long.
     pub fn of(system: &System, sampling_time: f64) -> Result<Self, LfrError> {
-        let sampled = Self::unchecked(system.clone(), sampling_time);
+        let sampled = Self::of_parts(system.clone(), sampling_time);
         match sampled.made() {
             Ok(_) => Ok(sampled),
             Err(reason) => Err(LfrError::Baseline { block: 0, reason: reason.clone() }),
         }
     }
 
-    fn unchecked(system: System, sampling_time: f64) -> Self {
+    fn of_parts(system: System, sampling_time: f64) -> Self {
         Self { system, sampling_time, made: OnceLock::new() }
     }
 

@@ -65,7 +65,7 @@ impl<'de> Deserialize<'de> for Sampled {
             effects.into_iter().map(|entry| placed(entry, &written)).collect();
         let sampling = Sampling { sampling_time: Some(sampling_time), integrator, hold };
         let effects = effects.map_err(D::Error::custom)?;
-        Ok(Self::unchecked(System { sampling, model, written, effects }, sampling_time))
+        Ok(Self::of_parts(System { sampling, model, written, effects }, sampling_time))
     }
 }
 

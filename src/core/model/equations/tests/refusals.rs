@@ -222,7 +222,7 @@ fn a_model_without_states_or_outputs() {
 }
 
 #[test]
-fn one_mistake_is_told_once() {
+fn one_mistake_is_reported_once() {
     // everything that uses a broken variable would be wrong too
     let (key, ..) = after("m*g*l*sin(theta)", "m*g*l*sin(theta");
     assert_eq!(key, "variables[0].value");

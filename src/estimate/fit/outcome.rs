@@ -10,11 +10,11 @@ use crate::system::{Placed, System};
 
 /// Response of the outputs, over their spread, to a change of a parameter by a tenth of its value
 /// below which the record does not show the parameter at all.
-const UNSEEN: f64 = 1e-10;
+const INSENSITIVE: f64 = 1e-10;
 
 impl Fit<'_> {
     /// What came out, with intervals.
-    pub(super) fn told(&self, done: &Levenberg, before: f64) -> Result<Estimate, EvaluateError> {
+    pub(super) fn outcome(&self, done: &Levenberg, before: f64) -> Result<Estimate, EvaluateError> {
         let count = done.residuals.len().max(1) as f64;
         let scaled: Vec<Vec<f64>> = done
             .columns
@@ -29,27 +29,6 @@ impl Fit<'_> {
             .map(|u| u.prior.map_or(0.0, |(_, d)| variance * (u.scale / d).powi(2)))
             .collect();
         let covariance = covariance(&scaled, &done.residuals, 1, &ridge);
-        let mut parameters = vec![];
-        for (i, (name, unit)) in self.names.iter().enumerate() {
-            let u = &self.unknowns[i];
-            let value = done.point[i];
-            let at_bound = value <= u.bounds.0 || value >= u.bounds.1;
-            let error = covariance.as_ref().map(|c| c[(i, i)].sqrt() * u.scale);
-            // a change as large as the value that moves nothing leaves nothing to know it by
-            let size = crate::statistics::rms(&scaled[i]);
-            let error = error.filter(|e| *e > 0.0 && size > UNSEEN);
-            let error =
-                error.filter(|e| e.is_finite() && *e < 1e3 * value.abs().max(u.scale) && !at_bound);
-            parameters.push(Estimated {
-                name: name.clone(),
-                from: u.start,
-                value,
-                std_error: error,
-                interval95: error.map(|e| [value - 1.96 * e, value + 1.96 * e]),
-                unit: unit.clone(),
-                at_bound,
-            });
-        }
         let names: Vec<String> = self.names.iter().map(|(name, _)| name.clone()).collect();
         // initial states may explain part of a change: what is left counts
         let mut basis = vec![];
@@ -70,6 +49,33 @@ impl Fit<'_> {
             .collect();
         let undetermined =
             if done.columns.len() == self.keys.len() { unseen(&names, &relative) } else { vec![] };
+        // a parameter that others make up for is known by no error, however flat the rest
+        let moves_freely = |name: &str| {
+            let mut changes = undetermined.iter().flat_map(|combination| &combination.changes);
+            changes.any(|(free, _)| free == name)
+        };
+        let mut parameters = vec![];
+        for (i, (name, unit)) in self.names.iter().enumerate() {
+            let u = &self.unknowns[i];
+            let value = done.point[i];
+            let at_bound = value <= u.bounds.0 || value >= u.bounds.1;
+            let error = covariance.as_ref().map(|c| c[(i, i)].sqrt() * u.scale);
+            // a change as large as the value that moves nothing leaves nothing to know it by
+            let size = crate::statistics::rms(&scaled[i]);
+            let error = error.filter(|e| *e > 0.0 && size > INSENSITIVE);
+            let error =
+                error.filter(|e| e.is_finite() && *e < 1e3 * value.abs().max(u.scale) && !at_bound);
+            let error = error.filter(|_| !moves_freely(name));
+            parameters.push(Estimated {
+                name: name.clone(),
+                from: u.start,
+                value,
+                std_error: error,
+                interval95: error.map(|e| [value - 1.96 * e, value + 1.96 * e]),
+                unit: unit.clone(),
+                at_bound,
+            });
+        }
         Ok(Estimate {
             system: self.with_values(&done.point)?,
             parameters,

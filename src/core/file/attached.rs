@@ -59,7 +59,7 @@ pub fn gathered(document: &Document) -> Result<Option<Document>, FileError> {
             Ok(beside) => own.value = numbers(&beside, &file.node.span)?,
             Err(FileError::Open { source, .. }) => {
                 let (file_name, reason) = (path.display().to_string(), source.to_string());
-                let complaint = Complaint::Beside { file: file_name, reason };
+                let complaint = Complaint::Attached { file: file_name, reason };
                 return fault(&file.node.span, ".file", complaint);
             }
             Err(other) => return Err(other),
@@ -135,7 +135,7 @@ fn stand_at(node: &mut Node, at: &Range<usize>) {
 
 /// Takes what stands in files of its own out of a model file's tables, and gives these files:
 /// `extended.network.json` beside `extended.toml`, the second one `extended.network-2.json`.
-pub fn put_beside(tables: &mut Map<String, Json>, model: &Path) -> Vec<(PathBuf, String)> {
+pub fn detached(tables: &mut Map<String, Json>, model: &Path) -> Vec<(PathBuf, String)> {
     let mut files: Vec<(PathBuf, String)> = vec![];
     let stem = model.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let Some(Json::Array(effects)) = tables.get_mut("effects") else { return files };

@@ -1,0 +1,49 @@
+//! Estimates say what a record tells of each parameter, and what it does not.
+
+use lacuna::data::{Random, Record};
+use lacuna::estimate::estimate;
+use lacuna::file::{Format, parse};
+
+/// x' = -a x + b c u: of b and c the record shows the product alone.
+const MODEL: &str = r#"sampling_time = 0.1
+[model.equations]
+inputs = [{ name = "u" }]
+states = [{ name = "x", derivative = "-a*x + b*c*u" }]
+outputs = [{ name = "y", value = "x" }]
+parameters = [{ name = "a", value = 0.8 }, { name = "b", value = 1.0 }, { name = "c", value = 2.0 }]
+"#;
+
+fn record() -> Record {
+    let mut random = Random::new(5);
+    let (mut u, mut y, mut x) = (vec![], vec![], 0.0);
+    for _ in 0..600 {
+        let force = random.normal();
+        u.push(force);
+        y.push(x + 0.01 * random.normal());
+        // exact for an input that is held: a = 1, b c = 3
+        let decay = (-0.1f64).exp();
+        x = decay * x + 3.0 * (1.0 - decay) * force;
+    }
+    Record::new(0.1).input("u", u).unwrap().output("y", y).unwrap()
+}
+
+#[test]
+fn a_parameter_that_another_makes_up_for_has_no_error_bar() {
+    let system = parse(MODEL, "m.toml", Format::Toml).unwrap();
+    let found = estimate(&system, &[record()], 0).unwrap();
+    let [a, b, c] = &found.parameters[..] else { panic!("{:?}", found.parameters) };
+    assert!((a.value - 1.0).abs() < 4.0 * a.std_error.unwrap(), "{a:?}");
+    assert!((b.value * c.value - 3.0).abs() < 0.1, "{b:?} {c:?}");
+    let [combination] = &found.undetermined[..] else { panic!("{:?}", found.undetermined) };
+    let names: Vec<&str> = combination.changes.iter().map(|(name, _)| &name[..]).collect();
+    assert_eq!(names, ["b", "c"]);
+    for parameter in [b, c] {
+        assert_eq!((parameter.std_error, parameter.interval95), (None, None), "{parameter:?}");
+    }
+    // with one of the two known, the other is
+    let fixed = MODEL.replace("value = 2.0 }", "value = 2.0, fixed = true }");
+    let found = estimate(&parse(&fixed, "m.toml", Format::Toml).unwrap(), &[record()], 0).unwrap();
+    assert!(found.undetermined.is_empty(), "{:?}", found.undetermined);
+    let b = &found.parameters[1];
+    assert!((b.value - 1.5).abs() < 4.0 * b.std_error.unwrap(), "{b:?}");
+}
