@@ -4,6 +4,7 @@
 
 mod encoder;
 mod hidden_mode;
+mod innovations;
 mod learned_part;
 mod learned_part_read;
 mod paper_msd;

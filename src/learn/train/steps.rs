@@ -6,6 +6,7 @@ use crate::optimise::{AdamState, Named};
 use super::batch::{batches, shuffled};
 use super::checkpoint::State;
 use super::fit::{Ended, Epoch, Fit, Follow};
+use super::innovations::{Gain, judged};
 use super::scale::Units;
 use super::task::Task;
 use super::validate::Scorer;
@@ -48,7 +49,8 @@ impl<'a> Steps<'a> {
         };
         let mut units = Units::of(&start.model, start.encoder.weights().len(), trainer.penalty)
             .sparse(&trainer.sparse, &start.groups())
-            .posed(trainer.posed(start)?);
+            .posed(trainer.posed(start)?)
+            .gaining(Gain::of(start));
         let theta = units.enter(&start.parameters());
         let known = match &trainer.checkpoint {
             Some(checkpoint) => State::read(&checkpoint.path, fingerprint, theta.len())?,
@@ -209,7 +211,8 @@ impl<'a> Steps<'a> {
             Some(scorer) if due => Some(scorer.score(&parameters)?),
             _ => None,
         };
-        let whole = score.as_ref().map(|score| score.whole(&self.deviations));
+        let weight = self.trainer.innovations;
+        let whole = score.as_ref().map(|score| judged(score, &self.deviations, weight));
         let best = whole.is_some_and(|whole| {
             whole.is_finite() && self.state.best.as_ref().is_none_or(|(best, ..)| whole < *best)
         });

@@ -40,6 +40,7 @@ impl<'a> Task<'a> {
         {
             loss.penalise(penalty);
         }
+        loss.follow_innovations(trainer.innovations);
         Ok(Self { loss, deviations, shooting })
     }
 }

@@ -12,8 +12,9 @@ use super::settings::{Finish, Growing, Weights};
 use super::shooting::Arithmetic;
 use super::sparse::Sparse;
 use super::steps::Steps;
+use super::task::Task;
 use super::validate::Validation;
-use super::{Augmented, TrainError};
+use super::{Augmented, MultipleShooting, TrainError};
 
 /// Joint training of an augmented model and its encoder on short sections of one or several
 /// records (Hoekstra et al., Sec. 2 and 4.3). The defaults are the paper's Table of
@@ -52,6 +53,11 @@ pub struct Trainer {
     /// the larger, the nearer to orthogonal to their sensitivities. 0: no such penalty.
     #[serde(skip_serializing_if = "is_nothing")]
     pub disguise: f64,
+    /// Weight of the likelihood of innovations beside the loss of the simulation, for a plant with
+    /// noise inside: the model has a gain K from its errors to its states, which is learned by it.
+    /// 0: no such gain.
+    #[serde(skip_serializing_if = "is_nothing")]
+    pub innovations: f64,
     /// How much records and outputs count.
     pub weights: Weights,
     /// Sections that grow to their length; absent: they have it from the beginning.
@@ -93,6 +99,7 @@ impl Default for Trainer {
             patience: None,
             penalty: 1.0,
             disguise: 0.0,
+            innovations: 0.0,
             weights: Weights::default(),
             growing: None,
             finish: None,
@@ -136,6 +143,7 @@ impl Trainer {
         let penalties = [
             ("penalty", self.penalty),
             ("disguise", self.disguise),
+            ("innovations", self.innovations),
             ("sparse.states", states),
             ("sparse.inputs", inputs),
             ("sparse.outputs", outputs),
@@ -182,6 +190,21 @@ impl Trainer {
         let print = self.fingerprint(start, training, validation)?;
         let steps = Steps::new(self, start, training, validation, print)?;
         steps.go(follow)
+    }
+
+    /// What a training lowers, at hand for other optimisers: the loss on its records with its
+    /// weights, and with the likelihood of innovations where that is asked for; without the
+    /// penalties on parameters.
+    ///
+    /// # Errors
+    ///
+    /// If model and records do not fit together.
+    pub fn loss<'a>(
+        &self,
+        start: &'a Augmented,
+        training: &'a [Record],
+    ) -> Result<MultipleShooting<'a>, TrainError> {
+        Ok(Task::of(self, start, training)?.loss)
     }
 
     /// The limits that parameters of a model keep to.
