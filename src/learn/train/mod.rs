@@ -28,6 +28,7 @@ mod orthogonal;
 mod predict;
 mod prune;
 mod recipe;
+mod restart;
 mod run;
 mod scale;
 mod sections;

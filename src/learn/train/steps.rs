@@ -266,7 +266,8 @@ impl<'a> Steps<'a> {
             None => (&state.theta, state.epoch),
         };
         model.set_parameters(&units.leave(theta))?;
+        let judged = state.best.as_ref().map(|(judged, ..)| *judged);
         let (history, rollbacks) = (state.history, state.rollbacks);
-        Ok(Fit { model, epoch, history, ended, rollbacks, resumed })
+        Ok(Fit { model, epoch, history, ended, rollbacks, restart: 0, judged, resumed })
     }
 }

@@ -7,7 +7,8 @@ use crate::lfr::Posed;
 use crate::optimise::Named;
 
 use super::checkpoint::{Checkpoint, Fingerprint};
-use super::fit::{Fit, Follow};
+use super::fit::{Ended, Fit, Follow};
+use super::restart::{better, redrawn};
 use super::settings::{Finish, Growing, Weights};
 use super::shooting::Arithmetic;
 use super::sparse::Sparse;
@@ -46,6 +47,10 @@ pub struct Trainer {
     /// Epochs without a better model after which training ends; none: never.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub patience: Option<usize>,
+    /// Trainings after the first, each with hidden layers drawn anew and everything else that the
+    /// best one so far has learned; they need validation records.
+    #[serde(skip_serializing_if = "is_none")]
+    pub restarts: usize,
     /// Weight of the squared relative distance of free baseline parameters from their nominal
     /// values.
     pub penalty: f64,
@@ -85,6 +90,11 @@ fn is_nothing(weight: &f64) -> bool {
     *weight == 0.0
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde asks for")]
+fn is_none(count: &usize) -> bool {
+    *count == 0
+}
+
 impl Default for Trainer {
     fn default() -> Self {
         Self {
@@ -97,6 +107,7 @@ impl Default for Trainer {
             threads: 1,
             validation: Validation::default(),
             patience: None,
+            restarts: 0,
             penalty: 1.0,
             disguise: 0.0,
             innovations: 0.0,
@@ -187,6 +198,27 @@ impl Trainer {
         follow: &mut dyn Follow,
     ) -> Result<Fit, TrainError> {
         self.check()?;
+        let mut best = self.once(start, training, validation, follow)?;
+        for restart in 1..=if validation.is_empty() { 0 } else { self.restarts } {
+            if best.ended == Ended::Asked {
+                break;
+            }
+            let again = redrawn(&best.model, self.seed, restart);
+            let checkpoint = self.checkpoint.as_ref().map(|own| own.of_restart(restart));
+            let trainer = Self { checkpoint, ..self.clone() };
+            let other = trainer.once(&again, training, validation, follow)?;
+            best = better(best, Fit { restart, ..other });
+        }
+        Ok(best)
+    }
+
+    fn once(
+        &self,
+        start: &Augmented,
+        training: &[Record],
+        validation: &[Record],
+        follow: &mut dyn Follow,
+    ) -> Result<Fit, TrainError> {
         let print = self.fingerprint(start, training, validation)?;
         let steps = Steps::new(self, start, training, validation, print)?;
         steps.go(follow)
@@ -224,7 +256,14 @@ impl Trainer {
         training: &[Record],
         validation: &[Record],
     ) -> Result<u64, TrainError> {
-        let own = Self { epochs: 0, threads: 1, checkpoint: None, patience: None, ..self.clone() };
+        let own = Self {
+            epochs: 0,
+            threads: 1,
+            checkpoint: None,
+            patience: None,
+            restarts: 0,
+            ..self.clone()
+        };
         let text = |what: Result<String, serde_json::Error>| {
             what.map_err(|e| TrainError::File {
                 path: "settings".into(),
