@@ -125,7 +125,10 @@ impl<'a> Again<'a> {
             return Ok(None);
         }
         units.project(&mut theta);
-        let parameters = units.leave(&theta);
+        let mut parameters = units.leave(&theta);
+        if self.trainer.orthogonal {
+            self.task.loss.orthogonalise(&mut parameters);
+        }
         let error = self.error(&parameters)?;
         Ok(Some((parameters, error)))
     }

@@ -107,6 +107,14 @@ impl<'a> MultipleShooting<'a> {
         self.orthogonal = Some(Box::new(orthogonal));
     }
 
+    /// Moves parameters to where the learned part does nothing that parameters could do, where a
+    /// penalty on that was added.
+    pub(super) fn orthogonalise(&mut self, parameters: &mut [f64]) {
+        if let Some(orthogonal) = &mut self.orthogonal {
+            orthogonal.project(parameters);
+        }
+    }
+
     /// Adds the likelihood of innovations with this weight; the loss itself is then that of the
     /// simulation, in which the model sees no errors.
     pub(super) fn follow_innovations(&mut self, weight: f64) {

@@ -157,12 +157,23 @@ impl<'a> Steps<'a> {
             self.save(true)?;
             return Ok(true);
         }
-        self.units.project(&mut state.theta);
+        self.keep();
+        let state = &mut self.state;
         (state.epoch, state.step, state.loss) = (state.epoch + 1, 0, 0.0);
         state.legs += usize::from(finishing);
         self.close(self.state.epoch, Some(done.loss))?;
         self.save(true)?;
         Ok(self.report(follow))
+    }
+
+    /// Brings parameters back to where they have to be.
+    fn keep(&mut self) {
+        self.units.project(&mut self.state.theta);
+        if self.trainer.orthogonal {
+            let mut parameters = self.units.leave(&self.state.theta);
+            self.loss.orthogonalise(&mut parameters);
+            self.state.theta = self.units.enter(&parameters);
+        }
     }
 
     /// One step, or one step back where the last one led to no finite loss.
@@ -176,10 +187,10 @@ impl<'a> Steps<'a> {
             state.before.copy_from_slice(&state.theta);
             let optimiser = &self.trainer.optimiser;
             optimiser.batch_step(&mut state.adam, &mut state.theta, &gradient)?;
-            self.units.project(&mut state.theta);
             state.in_a_row = 0;
             state.loss += loss;
             state.step += 1;
+            self.keep();
             return Ok(());
         }
         // back to where the last loss was finite, else to the best model, with smaller steps

@@ -58,6 +58,11 @@ pub struct Trainer {
     /// the larger, the nearer to orthogonal to their sensitivities. 0: no such penalty.
     #[serde(skip_serializing_if = "is_nothing")]
     pub disguise: f64,
+    /// Whether the learned part is orthogonal to the sensitivities of the baseline's parameters by
+    /// construction: every step is brought back to where it does nothing that these could do. Costs
+    /// a pass over at most 1500 samples for every parameter in a step.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub orthogonal: bool,
     /// Weight of the likelihood of innovations beside the loss of the simulation, for a plant with
     /// noise inside: the model has a gain K from its errors to its states, which is learned by it.
     /// 0: no such gain.
@@ -110,6 +115,7 @@ impl Default for Trainer {
             restarts: 0,
             penalty: 1.0,
             disguise: 0.0,
+            orthogonal: false,
             innovations: 0.0,
             weights: Weights::default(),
             growing: None,
