@@ -9,6 +9,7 @@ mod learned_part_read;
 mod paper_msd;
 mod trainer;
 mod training;
+mod well_posed;
 mod which_states;
 mod whole_sample;
 #[path = "paper_msd/without_adjoint.rs"]

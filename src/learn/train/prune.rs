@@ -112,7 +112,9 @@ impl<'a> Again<'a> {
     ) -> Result<Option<(Vec<f64>, f64)>, TrainError> {
         let held = held.iter().flat_map(|group| group.entries.iter().copied()).collect();
         let more = self.model.encoder.weights().len();
-        let units = Units::of(&self.model.model, more, self.trainer.penalty).holding(held);
+        let units = Units::of(&self.model.model, more, self.trainer.penalty)
+            .holding(held)
+            .posed(self.trainer.posed(self.model)?);
         let mut theta = units.enter(parameters);
         let (steps, lbfgs) = (self.trainer.sparse.refit, Lbfgs::default());
         let mut stopped = |done: usize, of: usize| follow.on_step(done, of);

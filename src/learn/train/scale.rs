@@ -1,7 +1,7 @@
 //! The optimiser's own units: weights as they are, physical parameters relative to their
 //! nominal values, which they may be drawn towards.
 
-use crate::lfr::{Block, Interconnection};
+use crate::lfr::{Block, Interconnection, Posed};
 use crate::optimise::Bounds;
 
 use super::groups::Group;
@@ -26,6 +26,8 @@ pub(crate) struct Units {
     s: f64,
     /// Entries that stay as they are.
     held: Vec<usize>,
+    /// From free numbers to parameters under which every loop can be solved.
+    posed: Posed,
 }
 
 impl Units {
@@ -51,7 +53,16 @@ impl Units {
         }
         let first = model.count() - model.s.learned().count();
         let entries = (first..model.count()).map(|at| (at, 1.0)).collect();
-        Self { unit, physical, penalty, groups: vec![], entries, s: 0.0, held: vec![] }
+        Self {
+            unit,
+            physical,
+            penalty,
+            groups: vec![],
+            entries,
+            s: 0.0,
+            held: vec![],
+            posed: Posed::default(),
+        }
     }
 
     /// The same with groups of weights drawn to 0.
@@ -64,6 +75,12 @@ impl Units {
         });
         self.groups = drawn.collect();
         self.s = sparse.s;
+        self
+    }
+
+    /// The same with limits that the parameters keep to, whatever the optimiser does.
+    pub fn posed(mut self, posed: Posed) -> Self {
+        self.posed = posed;
         self
     }
 
@@ -109,6 +126,12 @@ impl Units {
 
     /// And back.
     pub fn leave(&self, values: &[f64]) -> Vec<f64> {
+        let mut all = self.raw(values);
+        self.posed.enter(&mut all);
+        all
+    }
+
+    fn raw(&self, values: &[f64]) -> Vec<f64> {
         values.iter().zip(&self.unit).map(|(value, unit)| value * unit).collect()
     }
 
@@ -116,6 +139,7 @@ impl Units {
     /// penalty's, and gives the penalty: half of `penalty` times the squared relative distance
     /// from the nominal values (co-estimation, Hoekstra et al., footnote 2).
     pub fn penalise(&self, theta: &[f64], gradient: &mut [f64]) -> f64 {
+        self.posed.back(&self.raw(theta), gradient);
         gradient.iter_mut().zip(&self.unit).for_each(|(g, unit)| *g *= unit);
         let mut sum = 0.0;
         for &(at, nominal, _) in &self.physical {

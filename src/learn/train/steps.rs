@@ -47,7 +47,8 @@ impl<'a> Steps<'a> {
             records => Some(Scorer::new(start, records, &trainer.validation, shooting)?),
         };
         let mut units = Units::of(&start.model, start.encoder.weights().len(), trainer.penalty)
-            .sparse(&trainer.sparse, &start.groups());
+            .sparse(&trainer.sparse, &start.groups())
+            .posed(trainer.posed(start)?);
         let theta = units.enter(&start.parameters());
         let known = match &trainer.checkpoint {
             Some(checkpoint) => State::read(&checkpoint.path, fingerprint, theta.len())?,

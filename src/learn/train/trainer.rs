@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::data::Record;
+use crate::lfr::Posed;
 use crate::optimise::Named;
 
 use super::checkpoint::{Checkpoint, Fingerprint};
@@ -61,6 +62,13 @@ pub struct Trainer {
     pub finish: Option<Finish>,
     /// Penalties under which signals of the learned part vanish.
     pub sparse: Sparse,
+    /// Largest gain around an algebraic loop of networks, below 1: such a loop then has one
+    /// solution in every step of training, by construction. Infinite: no such promise.
+    pub loop_gain: f64,
+    /// Largest gain from the augmented states to the next ones, below 1: they then forget where
+    /// they began, whatever was learned. Absent: no such promise.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contracting: Option<f64>,
     /// Where progress is written down.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub checkpoint: Option<Checkpoint>,
@@ -89,6 +97,8 @@ impl Default for Trainer {
             growing: None,
             finish: None,
             sparse: Sparse::default(),
+            loop_gain: 0.95,
+            contracting: None,
             checkpoint: None,
         }
     }
@@ -137,6 +147,17 @@ impl Trainer {
                 return Err(TrainError::Setting { name, found, expected });
             }
         }
+        let below_one = |gain: f64| gain > 0.0 && gain < 1.0;
+        let contracting = self.contracting.map(|gain| ("contracting", gain, below_one(gain)));
+        let around = self.loop_gain;
+        let endless = around == f64::INFINITY;
+        let around = ("loop_gain", around, endless || below_one(around));
+        for (name, gain, fits) in contracting.into_iter().chain([around]) {
+            if !fits {
+                let (found, expected) = (gain.to_string(), "a number above 0 and below 1");
+                return Err(TrainError::Setting { name, found, expected });
+            }
+        }
         if let Some(finish) = &self.finish {
             finish.optimiser.validate()?;
         }
@@ -161,6 +182,11 @@ impl Trainer {
         let print = self.fingerprint(start, training, validation)?;
         let steps = Steps::new(self, start, training, validation, print)?;
         steps.go(follow)
+    }
+
+    /// The limits that parameters of a model keep to.
+    pub(super) fn posed(&self, model: &Augmented) -> Result<Posed, TrainError> {
+        Ok(Posed::of(&model.model, self.loop_gain, self.contracting)?)
     }
 
     /// Epochs in all, legs of the finish among them.
