@@ -37,7 +37,8 @@ fn what_is_learned_is_nothing_that_parameters_could_do() {
         let (free, ..) = trained(how);
         let (fit, trainer, start, records) = trained(&format!("{how}\northogonal = true"));
         let of = |fit: &Fit| damping(fit, &records[0]).abs();
-        assert!(of(&free) > 0.2 && of(&fit) < 0.05, "{how}: {} {}", of(&free), of(&fit));
+        // along the trained model's own way, which is not the first simulation's
+        assert!(of(&free) > 0.5 && of(&fit) < 0.1 * of(&free), "{how}: {} {}", of(&free), of(&fit));
         // along the first simulation to the last digits: what the penalty would add to the loss
         let plain = Trainer { orthogonal: false, ..trainer.clone() };
         let value = |trainer: &Trainer| {
