@@ -5,7 +5,7 @@ use lacuna::encoder::{About, SampledLinear};
 use lacuna::evaluate::{Init, Simulation};
 use lacuna::lfr::Sampled;
 use lacuna::system::{Sampling, System};
-use lacuna::train::{Augmented, Fit, Recipe};
+use lacuna::train::{Augmented, Recipe};
 
 use super::learned_part::{noisy, system};
 
@@ -84,25 +84,46 @@ fn a_start_from_data_is_the_baseline_until_it_is_trained() {
     assert_ne!(data.parameters(), zero.parameters());
 }
 
+/// Simulation error of the best model on the validation record over that of the baseline: from
+/// data, and from rest.
+fn both(seed: u64) -> [f64; 2] {
+    let records = records(seed);
+    ["data", "zero"].map(|start| {
+        let (model, _) = begun(start, seed, &records);
+        let trainer = recipe(start, seed).training;
+        let fit = trainer.fit(&model, &records[..1], &records[1..], &mut ()).unwrap();
+        let at = |epoch: usize| fit.history[epoch].score.as_ref().unwrap().simulation[0];
+        at(fit.epoch) / at(0)
+    })
+}
+
+fn median(mut ratios: Vec<f64>) -> f64 {
+    ratios.sort_by(f64::total_cmp);
+    ratios[ratios.len() / 2]
+}
+
 #[test]
 fn a_hidden_mode_is_learned_better_from_data_than_from_rest() {
-    let error = |fit: &Fit| {
-        let best = fit.history[fit.epoch].score.as_ref().unwrap();
-        best.simulation[0] / fit.history[0].score.as_ref().unwrap().simulation[0]
-    };
-    let mut ratios = vec![];
-    for seed in 1..=4 {
-        let records = records(seed);
-        let fit = |start: &str| {
-            let (model, _) = begun(start, seed, &records);
-            let trainer = recipe(start, seed).training;
-            error(&trainer.fit(&model, &records[..1], &records[1..], &mut ()).unwrap())
-        };
-        let (data, zero) = (fit("data"), fit("zero"));
-        println!("seed {seed}: from data {data:.3}, from rest {zero:.3}");
+    let ratios = (1..=4).map(|seed| {
+        let [data, zero] = both(seed);
         assert!(data < zero, "seed {seed}: {data} {zero}");
-        ratios.push(data / zero);
-    }
-    ratios.sort_by(f64::total_cmp);
-    assert!(ratios[2] < 0.7, "{ratios:?}");
+        data / zero
+    });
+    let ratio = median(ratios.collect());
+    assert!(ratio < 0.7, "{ratio}");
+}
+
+/// The table of `docs/results/hidden_mode.json`.
+#[test]
+#[ignore = "a table of ten seeds: run it by name, with --nocapture"]
+fn a_hidden_mode_in_ten_seeds() {
+    let ratios = (1..=10).map(|seed| {
+        let [data, zero] = both(seed);
+        println!("[\"{seed}\", \"{:.1}\", \"{:.1}\"],", 100.0 * data, 100.0 * zero);
+        data / zero
+    });
+    let ratios: Vec<f64> = ratios.collect();
+    let better = ratios.iter().filter(|ratio| **ratio < 1.0).count();
+    println!("median ratio {:.2}, better in {better}", median(ratios));
+    assert!(better >= 9, "{better} of 10");
 }
