@@ -4,9 +4,12 @@
 
 mod encoder;
 mod hidden_mode;
+mod innovations;
 mod learned_part;
 mod learned_part_read;
+mod orthogonal;
 mod paper_msd;
+mod restarts;
 mod trainer;
 mod training;
 mod well_posed;

@@ -5,6 +5,7 @@
 use super::ablate::{Ablation, ablate, without};
 use super::fit::{Fit, Follow};
 use super::groups::Group;
+use super::innovations::Gain;
 use super::scale::Units;
 use super::task::Task;
 use super::validate::Scorer;
@@ -114,7 +115,8 @@ impl<'a> Again<'a> {
         let more = self.model.encoder.weights().len();
         let units = Units::of(&self.model.model, more, self.trainer.penalty)
             .holding(held)
-            .posed(self.trainer.posed(self.model)?);
+            .posed(self.trainer.posed(self.model)?)
+            .gaining(Gain::of(self.model));
         let mut theta = units.enter(parameters);
         let (steps, lbfgs) = (self.trainer.sparse.refit, Lbfgs::default());
         let mut stopped = |done: usize, of: usize| follow.on_step(done, of);
@@ -123,7 +125,10 @@ impl<'a> Again<'a> {
             return Ok(None);
         }
         units.project(&mut theta);
-        let parameters = units.leave(&theta);
+        let mut parameters = units.leave(&theta);
+        if self.trainer.orthogonal {
+            self.task.loss.orthogonalise(&mut parameters);
+        }
         let error = self.error(&parameters)?;
         Ok(Some((parameters, error)))
     }

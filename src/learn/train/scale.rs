@@ -5,6 +5,7 @@ use crate::lfr::{Block, Interconnection, Posed};
 use crate::optimise::Bounds;
 
 use super::groups::Group;
+use super::innovations::Gain;
 use super::sparse::{SMOOTH, Sparse};
 
 /// Root mean square of a group's weights at which re-weighting leaves its penalty as it is.
@@ -28,6 +29,8 @@ pub(crate) struct Units {
     held: Vec<usize>,
     /// From free numbers to parameters under which every loop can be solved.
     posed: Posed,
+    /// The gain of innovations.
+    gain: Option<Gain>,
 }
 
 impl Units {
@@ -62,6 +65,7 @@ impl Units {
             s: 0.0,
             held: vec![],
             posed: Posed::default(),
+            gain: None,
         }
     }
 
@@ -81,6 +85,13 @@ impl Units {
     /// The same with limits that the parameters keep to, whatever the optimiser does.
     pub fn posed(mut self, posed: Posed) -> Self {
         self.posed = posed;
+        self
+    }
+
+    /// The same with a gain of innovations, in units of states over outputs.
+    pub fn gaining(mut self, gain: Gain) -> Self {
+        gain.units().for_each(|(at, unit)| self.unit[at] = unit);
+        self.gain = Some(gain);
         self
     }
 
@@ -165,10 +176,15 @@ impl Units {
         sum
     }
 
-    /// Moves physical parameters back between their bounds.
+    /// Moves physical parameters back between their bounds, and a gain of innovations to where the
+    /// predictor forgets.
     pub fn project(&self, theta: &mut [f64]) {
         for &(at, _, [min, max]) in &self.physical {
             theta[at] = theta[at].max(min).min(max);
+        }
+        if let Some(gain) = &self.gain {
+            let share = gain.share(&self.raw(theta));
+            gain.units().for_each(|(at, _)| theta[at] *= share);
         }
     }
 }
