@@ -7,7 +7,7 @@ use lacuna::lfr::Sampled;
 use lacuna::system::{Sampling, System};
 use lacuna::train::{Augmented, Recipe};
 
-use super::learned_part::{noisy, system};
+use super::learned_part::{INTEGRATOR, PID, looped, noisy, system};
 
 const PLANT: &str = "sampling_time = 0.05\n[model.duffing]\nmass = 1.0\ndamping = 2.0\n\
     stiffness = 40.0\nhardening = 60.0\n";
@@ -82,6 +82,48 @@ fn a_start_from_data_is_the_baseline_until_it_is_trained() {
     }
     // the added states move, and the encoder knows them: they do not at rest
     assert_ne!(data.parameters(), zero.parameters());
+}
+
+#[test]
+fn every_structure_starts_as_its_baseline() {
+    let records = records(2);
+    for form in ["parallel", "series_in", "series_out", "input_block", "output_block"] {
+        for more in ["", "output_equation = true\n", "of = [\"v\", \"u\"]\ninto = [\"v\"]\n"] {
+            let outputs: Vec<Vec<f64>> = ["data", "zero"]
+                .iter()
+                .map(|start| {
+                    let mut recipe = recipe(start, 3);
+                    let text = format!("form = \"{form}\"\naugmented_states = 3\nhidden = [4]\n");
+                    recipe.structure = toml::from_str(&format!("{text}{more}")).unwrap();
+                    let (model, started) = recipe.start(&system(PLANT), &records[..1], 3).unwrap();
+                    let found = started.notes.iter().any(|note| note.starts_with("xa1"));
+                    assert_eq!(found, *start == "data", "{form} {more} {:?}", started.notes);
+                    model.simulate(&records[1]).unwrap().outputs.swap_remove(0)
+                })
+                .collect();
+            let apart = outputs[0].iter().zip(&outputs[1]).filter(|(a, b)| !a.is_nan() && a != b);
+            assert_eq!(apart.count(), 0, "{form} {more}");
+        }
+    }
+}
+
+#[test]
+fn a_hidden_mode_of_a_plant_in_its_loop_is_found_too() {
+    let absorber = "[[effects]]\ninto = \"v\"\nof = \"p\"\n\
+        effect.extra_mode = { frequency = 9.0, damping = 0.04, participation = 0.25 }\n";
+    let truth = system(&format!("{INTEGRATOR}{absorber}{PID}"));
+    let model = system(&format!("{INTEGRATOR}{PID}"));
+    let records = [looped(&truth, 1200, 1), looped(&truth, 700, 2)];
+    let error = |start: &str| {
+        let recipe = recipe(start, 1);
+        let (begun, started) = recipe.start(&model, &records[..1], 1).unwrap();
+        let fit = recipe.training.fit(&begun, &records[..1], &records[1..], &mut ()).unwrap();
+        let at = |epoch: usize| fit.history[epoch].score.as_ref().unwrap().simulation[0];
+        (at(0), at(fit.epoch), started.notes)
+    };
+    let (data, zero) = (error("data"), error("zero"));
+    assert!(data.2.iter().any(|note| note.starts_with("xa1")), "{:?}", data.2);
+    assert!(data.0 == zero.0 && data.1 < 0.5 * zero.1, "{data:?} {zero:?}");
 }
 
 /// Simulation error of the best model on the validation record over that of the baseline: from
