@@ -59,11 +59,15 @@ impl Trainer {
                 order.push((again.error(&without(&best.0, &groups[i]))?, i));
             }
             order.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (_, i) in order {
+            for (plain, i) in order {
                 let mut out: Vec<&Group> = gone.iter().map(|&other| &groups[other]).collect();
                 out.push(&groups[i]);
                 let start = without(&best.0, &groups[i]);
-                let Some(other) = again.learn(&start, &out, follow)? else { break 'all };
+                let Some(mut other) = again.learn(&start, &out, follow)? else { break 'all };
+                // learning again may lead away from what was not learned from
+                if plain < other.1 {
+                    other = (start, plain);
+                }
                 if other.1 <= AGAIN * best.1 {
                     best = other;
                     gone.push(i);
