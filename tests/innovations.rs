@@ -98,13 +98,27 @@ fn without_a_gain_a_prediction_is_the_simulation() {
 
 #[test]
 fn the_loss_with_innovations_meets_differences() {
-    let records = [record(400, 4)];
+    let one = record(400, 4);
+    // a second output, in another unit, some of which was not measured
+    let mut speed: Vec<f64> =
+        one.outputs[0].values.windows(2).map(|y| 20.0 * (y[1] - y[0])).collect();
+    speed.push(0.0);
+    speed[100..120].fill(f64::NAN);
+    let two = one.clone().output("v", speed).unwrap();
+    for (model, record) in
+        [(MODEL.into(), one), (MODEL.replace("0.0]]\n", "0.0], [0.0, 1.0]]\n"), two)]
+    {
+        meets_differences(&model, &[record]);
+    }
+}
+
+fn meets_differences(model: &str, records: &[Record]) {
     let recipe = recipe("innovations = 0.7");
-    let (mut model, _) = recipe.start(&system(MODEL), &records, 0).unwrap();
+    let (mut model, _) = recipe.start(&system(model), records, 0).unwrap();
     let mut random = Random::new(9);
     let moved: Vec<f64> = model.parameters().iter().map(|v| v + 0.02 * random.normal()).collect();
     model.set_parameters(&moved).unwrap();
-    let mut loss = recipe.training.loss(&model, &records).unwrap();
+    let mut loss = recipe.training.loss(&model, records).unwrap();
     let starts: Vec<usize> = loss.starts().iter().copied().step_by(7).collect();
     let mut gradient = vec![0.0; moved.len()];
     loss.loss(&moved, &starts, Some(&mut gradient)).unwrap();
