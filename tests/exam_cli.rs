@@ -161,6 +161,10 @@ fn answers_of_any_tool_are_marked() {
         (json!([{ "case": 9, "causes": [] }]), "none of the 4 cases"),
         (json!([{ "case": 1, "causes": [] }, { "case": 1, "causes": [] }]), "answered twice"),
         (json!([{ "case": 1, "causes": [{ "effect": "drag" }] }]), "into"),
+        (
+            json!([{ "case": 1, "causes": [], "extended_model": "../m.toml" }]),
+            "is not in the folder",
+        ),
     ] {
         place.put("answers.json", &answers(list));
         let said = place.refused("exam mark exam answers.json --out marks");

@@ -5,9 +5,9 @@ use lacuna::encoder::{About, SampledLinear};
 use lacuna::evaluate::{Init, Simulation};
 use lacuna::lfr::Sampled;
 use lacuna::system::{Sampling, System};
-use lacuna::train::{Augmented, Fit, Recipe};
+use lacuna::train::{Augmented, Recipe};
 
-use super::learned_part::{noisy, system};
+use super::learned_part::{INTEGRATOR, PID, looped, noisy, system};
 
 const PLANT: &str = "sampling_time = 0.05\n[model.duffing]\nmass = 1.0\ndamping = 2.0\n\
     stiffness = 40.0\nhardening = 60.0\n";
@@ -85,24 +85,87 @@ fn a_start_from_data_is_the_baseline_until_it_is_trained() {
 }
 
 #[test]
-fn a_hidden_mode_is_learned_better_from_data_than_from_rest() {
-    let error = |fit: &Fit| {
-        let best = fit.history[fit.epoch].score.as_ref().unwrap();
-        best.simulation[0] / fit.history[0].score.as_ref().unwrap().simulation[0]
-    };
-    let mut ratios = vec![];
-    for seed in 1..=4 {
-        let records = records(seed);
-        let fit = |start: &str| {
-            let (model, _) = begun(start, seed, &records);
-            let trainer = recipe(start, seed).training;
-            error(&trainer.fit(&model, &records[..1], &records[1..], &mut ()).unwrap())
-        };
-        let (data, zero) = (fit("data"), fit("zero"));
-        println!("seed {seed}: from data {data:.3}, from rest {zero:.3}");
-        assert!(data < zero, "seed {seed}: {data} {zero}");
-        ratios.push(data / zero);
+fn every_structure_starts_as_its_baseline() {
+    let records = records(2);
+    for form in ["parallel", "series_in", "series_out", "input_block", "output_block"] {
+        for more in ["", "output_equation = true\n", "of = [\"v\", \"u\"]\ninto = [\"v\"]\n"] {
+            let outputs: Vec<Vec<f64>> = ["data", "zero"]
+                .iter()
+                .map(|start| {
+                    let mut recipe = recipe(start, 3);
+                    let text = format!("form = \"{form}\"\naugmented_states = 3\nhidden = [4]\n");
+                    recipe.structure = toml::from_str(&format!("{text}{more}")).unwrap();
+                    let (model, started) = recipe.start(&system(PLANT), &records[..1], 3).unwrap();
+                    let found = started.notes.iter().any(|note| note.starts_with("xa1"));
+                    assert_eq!(found, *start == "data", "{form} {more} {:?}", started.notes);
+                    model.simulate(&records[1]).unwrap().outputs.swap_remove(0)
+                })
+                .collect();
+            let apart = outputs[0].iter().zip(&outputs[1]).filter(|(a, b)| !a.is_nan() && a != b);
+            assert_eq!(apart.count(), 0, "{form} {more}");
+        }
     }
+}
+
+#[test]
+fn a_hidden_mode_of_a_plant_in_its_loop_is_found_too() {
+    let absorber = "[[effects]]\ninto = \"v\"\nof = \"p\"\n\
+        effect.extra_mode = { frequency = 9.0, damping = 0.04, participation = 0.25 }\n";
+    let truth = system(&format!("{INTEGRATOR}{absorber}{PID}"));
+    let model = system(&format!("{INTEGRATOR}{PID}"));
+    let records = [looped(&truth, 1200, 1), looped(&truth, 700, 2)];
+    let error = |start: &str| {
+        let recipe = recipe(start, 1);
+        let (begun, started) = recipe.start(&model, &records[..1], 1).unwrap();
+        let fit = recipe.training.fit(&begun, &records[..1], &records[1..], &mut ()).unwrap();
+        let at = |epoch: usize| fit.history[epoch].score.as_ref().unwrap().simulation[0];
+        (at(0), at(fit.epoch), started.notes)
+    };
+    let (data, zero) = (error("data"), error("zero"));
+    assert!(data.2.iter().any(|note| note.starts_with("xa1")), "{:?}", data.2);
+    assert!(data.0 == zero.0 && data.1 < 0.5 * zero.1, "{data:?} {zero:?}");
+}
+
+/// Simulation error of the best model on the validation record over that of the baseline: from
+/// data, and from rest.
+fn both(seed: u64) -> [f64; 2] {
+    let records = records(seed);
+    ["data", "zero"].map(|start| {
+        let (model, _) = begun(start, seed, &records);
+        let trainer = recipe(start, seed).training;
+        let fit = trainer.fit(&model, &records[..1], &records[1..], &mut ()).unwrap();
+        let at = |epoch: usize| fit.history[epoch].score.as_ref().unwrap().simulation[0];
+        at(fit.epoch) / at(0)
+    })
+}
+
+fn median(mut ratios: Vec<f64>) -> f64 {
     ratios.sort_by(f64::total_cmp);
-    assert!(ratios[2] < 0.7, "{ratios:?}");
+    ratios[ratios.len() / 2]
+}
+
+#[test]
+fn a_hidden_mode_is_learned_better_from_data_than_from_rest() {
+    let ratios = (1..=4).map(|seed| {
+        let [data, zero] = both(seed);
+        assert!(data < zero, "seed {seed}: {data} {zero}");
+        data / zero
+    });
+    let ratio = median(ratios.collect());
+    assert!(ratio < 0.7, "{ratio}");
+}
+
+/// The table of `docs/results/hidden_mode.json`.
+#[test]
+#[ignore = "a table of ten seeds: run it by name, with --nocapture"]
+fn a_hidden_mode_in_ten_seeds() {
+    let ratios = (1..=10).map(|seed| {
+        let [data, zero] = both(seed);
+        println!("[\"{seed}\", \"{:.1}\", \"{:.1}\"],", 100.0 * data, 100.0 * zero);
+        data / zero
+    });
+    let ratios: Vec<f64> = ratios.collect();
+    let better = ratios.iter().filter(|ratio| **ratio < 1.0).count();
+    println!("median ratio {:.2}, better in {better}", median(ratios));
+    assert!(better >= 9, "{better} of 10");
 }

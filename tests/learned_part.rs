@@ -177,17 +177,17 @@ fn every_signal_of_a_learned_part_has_a_worth_and_nothing_that_counts_is_taken_o
     assert!(changed.clone().all(|(_, b)| *b == 0.0));
 }
 
-const INTEGRATOR: &str = "sampling_time = 0.05\n[model.equations]\n\
+pub const INTEGRATOR: &str = "sampling_time = 0.05\n[model.equations]\n\
     inputs = [{ name = \"u\", unit = \"N\" }]\n\
     states = [{ name = \"p\", unit = \"m\", derivative = \"v\" }, \
     { name = \"v\", unit = \"m/s\", derivative = \"u/m\" }]\n\
     outputs = [{ name = \"y\", unit = \"m\", value = \"p\" }]\n\
     parameters = [{ name = \"m\", value = 2.0, unit = \"kg\", min = 0.0 }]\n";
-const PID: &str = "[controller]\nreferences = [\"r\"]\nmeasured = [\"y\"]\ndrives = [\"u\"]\ninject = [\"d\"]\n\
+pub const PID: &str = "[controller]\nreferences = [\"r\"]\nmeasured = [\"y\"]\ndrives = [\"u\"]\ninject = [\"d\"]\n\
     [controller.law.pid]\nsampling_time = 0.05\nkp = 30.0\nki = 8.0\nkd = 12.0\nfilter = 0.02\nmin = -40.0\nmax = 40.0\n";
 
 /// A record of the reference and the output in closed loop.
-fn looped(truth: &System, samples: usize, seed: u64) -> Record {
+pub fn looped(truth: &System, samples: usize, seed: u64) -> Record {
     let mut random = Random::new(seed);
     let (mut r, mut d) = (0.0, 0.0);
     let pairs: Vec<(f64, f64)> = (0..samples)

@@ -164,6 +164,11 @@ fn predictions_ahead_go_from_innovations_to_the_simulation() {
     let errors: Vec<f64> =
         [1, 2, 5, 60].map(|k| rmse(&predictor.ahead(&noise, k).unwrap()[0])).to_vec();
     assert!(errors.windows(2).all(|pair| pair[0] < pair[1]), "{errors:?}");
+    // in one call, from model and record alone
+    let told = Predictor::predict(&system, &record, 5).unwrap();
+    let bits = |y: &[f64]| y.iter().map(|v| v.to_bits()).collect::<Vec<u64>>();
+    assert_eq!(bits(&told.outputs[0].1), bits(&predictor.ahead(&noise, 5).unwrap()[0]));
+    assert!((told.metrics[0].1.rmse / errors[2] - 1.0).abs() < 0.1, "{errors:?}");
     // one ahead: the innovations
     let e = &predictor.innovations(&noise, false).unwrap().values[0];
     let one = predictor.ahead(&noise, 1).unwrap().swap_remove(0);

@@ -4,11 +4,15 @@
 
 mod encoder;
 mod hidden_mode;
+mod innovations;
 mod learned_part;
 mod learned_part_read;
+mod orthogonal;
 mod paper_msd;
+mod restarts;
 mod trainer;
 mod training;
+mod well_posed;
 mod which_states;
 mod whole_sample;
 #[path = "paper_msd/without_adjoint.rs"]

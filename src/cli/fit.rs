@@ -179,6 +179,9 @@ impl Done<'_> {
                 ));
             }
         }
+        if fit.restart > 0 {
+            look.result(&format!("The best model comes from restart {}.", fit.restart));
+        }
         if fit.rollbacks > 0 {
             look.result(&format!("{} steps led nowhere and were taken back.", fit.rollbacks));
         }

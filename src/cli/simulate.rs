@@ -13,9 +13,8 @@ use lacuna::data::Record;
 use lacuna::digits::number;
 use lacuna::evaluate::{Metrics, Simulation};
 use lacuna::fault::Place;
-use lacuna::likelihood::{NoiseModel, Predictor};
+use lacuna::likelihood::Predictor;
 use lacuna::report::documents;
-use lacuna::system::System;
 
 pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
     if args.out.as_deref() == Some(Path::new("-")) && look.json {
@@ -31,7 +30,7 @@ pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
     let record = input::record_to_simulate(&args.data, &want, &args.columns, look)?;
     let run = match args.horizon {
         None => Simulation::of(&system, &record, input::init(args.init))?,
-        Some(horizon) => predicted(&system, &record, horizon as usize)?,
+        Some(horizon) => Predictor::predict(&system, &record, horizon as usize)?,
     };
     // the record goes to stdout, and words to stderr: one of both can be piped
     let piped = args.out.as_deref() == Some(Path::new("-"));
@@ -63,30 +62,6 @@ pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
     document["horizon"] = json!(args.horizon);
     look.document(&document);
     Ok(0)
-}
-
-/// Predictions so many samples ahead, in the form of a simulation.
-fn predicted(system: &System, record: &Record, horizon: usize) -> Result<Simulation, Failure> {
-    let predictor = Predictor::new(system, std::slice::from_ref(record))?;
-    let NoiseModel::Predictor(noise) = predictor.fit_noise()?.noise else {
-        return Err(Failure::work("no noise keeps the predictor among finite numbers".into()));
-    };
-    let ahead = predictor.ahead(&noise, horizon)?;
-    let names = predictor.outputs().into_iter().map(|(name, _)| name);
-    let outputs: Vec<(String, Vec<f64>)> = names.zip(ahead).collect();
-    let metrics = outputs.iter().filter_map(|(name, values)| {
-        let measured = &record.outputs.iter().find(|signal| signal.name == *name)?.values;
-        let pairs = measured.iter().zip(values).filter(|(y, v)| y.is_finite() && v.is_finite());
-        let (y, v): (Vec<f64>, Vec<f64>) = pairs.unzip();
-        Some((name.clone(), Metrics::of(&y, &v)?))
-    });
-    Ok(Simulation {
-        metrics: metrics.collect(),
-        outputs,
-        init_samples: 0,
-        initial_state: vec![],
-        diverged_at: None,
-    })
 }
 
 /// One line on how good a simulation is.

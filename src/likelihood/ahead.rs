@@ -12,13 +12,76 @@
 
 use super::error::LikelihoodError;
 use super::follow::Wanted;
+use super::model::NoiseModel;
 use super::noise::Noise;
 use super::predictor::Predictor;
 use super::replay::Pass;
+use crate::data::Record;
 use crate::effect::Mechanism;
-use crate::system::Transition;
+use crate::evaluate::{Metrics, Simulation};
+use crate::system::{System, Transition};
 
 impl Predictor {
+    /// Predictions of a record `horizon` samples (at least 1) ahead, in the form of a simulation:
+    /// between the innovations' own (1) and a free run (as many as the plant remembers). The noise
+    /// is the one that the record itself makes most likely.
+    ///
+    /// # Example
+    ///
+    /// ```
+    /// use lacuna::data::Record;
+    /// use lacuna::evaluate::{Init, Simulation};
+    /// use lacuna::file::{Format, parse};
+    /// use lacuna::likelihood::Predictor;
+    ///
+    /// let model = "sampling_time = 0.1\n[model.lti]\nA = [[0.9]]\nB = [[0.2]]\nC = [[1.0]]\n";
+    /// let model = parse(model, "model.toml", Format::Toml)?;
+    /// // a state that something unknown moves: a free run cannot know it, a prediction does
+    /// let u: Vec<f64> = (0..400).map(|k| ((k * k) as f64 * 0.7).sin()).collect();
+    /// let (mut x, mut y) = (0.0, vec![]);
+    /// for k in 0..400 {
+    ///     y.push(x);
+    ///     x = 0.9 * x + 0.2 * u[k] + 0.1 * ((k * k * k) as f64 * 0.3).sin();
+    /// }
+    /// let record = Record::new(0.1).input("u", u)?.output("y", y)?;
+    /// let rmse = |run: &Simulation| run.metrics[0].1.rmse;
+    /// let one = rmse(&Predictor::predict(&model, &record, 1)?);
+    /// let ten = rmse(&Predictor::predict(&model, &record, 10)?);
+    /// let free = rmse(&Simulation::of(&model, &record, Init::Forgotten)?);
+    /// assert!(one < 0.7 * ten && ten < 1.1 * free);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As [`Predictor::new`], [`Predictor::fit_noise`] and [`Predictor::ahead`].
+    pub fn predict(
+        system: &System,
+        record: &Record,
+        horizon: usize,
+    ) -> Result<Simulation, LikelihoodError> {
+        let predictor = Self::new(system, std::slice::from_ref(record))?;
+        let NoiseModel::Predictor(noise) = predictor.fit_noise()?.noise else {
+            return Err(LikelihoodError::Diverges { sample: 0, time: 0.0 });
+        };
+        let ahead = predictor.ahead(&noise, horizon)?;
+        let names = predictor.outputs().into_iter().map(|(name, _)| name);
+        let outputs: Vec<(String, Vec<f64>)> = names.zip(ahead).collect();
+        let metrics = outputs.iter().filter_map(|(name, values)| {
+            let measured = &record.outputs.iter().find(|signal| signal.name == *name)?.values;
+            let pairs = measured.iter().zip(values).filter(|(y, v)| y.is_finite() && v.is_finite());
+            let (y, v): (Vec<f64>, Vec<f64>) = pairs.unzip();
+            Some((name.clone(), Metrics::of(&y, &v)?))
+        });
+        Ok(Simulation {
+            metrics: metrics.collect(),
+            outputs,
+            init_samples: 0,
+            initial_state: vec![],
+            diverged_at: None,
+        })
+    }
+
     /// What every output is predicted to be `horizon` samples (at least 1) before it is measured,
     /// one series per output in its unit; not a number over the first samples of every segment.
     ///

@@ -65,6 +65,24 @@ fn checkpoints() {
     recipe.training.epochs = 3;
     let resumed = recipe.training.fit(&start, &[record()], &[record()], &mut ()).unwrap();
     assert_eq!(resumed.resumed, Some(2));
+    // what once ended in a panic: lengths, epochs and counts that belong to no run
+    type Change = fn(&mut serde_json::Value);
+    let changes: [(&str, Change); 6] = [
+        ("theta", |state| drop(state["theta"].as_array_mut().unwrap().pop())),
+        ("before", |state| state["before"] = serde_json::json!([])),
+        ("adam.second", |state| drop(state["adam"]["second"].as_array_mut().unwrap().pop())),
+        ("history", |state| state["epoch"] = u64::MAX.into()),
+        ("best", |state| state["best"][2] = 7.into()),
+        ("adam.step", |state| state["adam"]["step"] = u64::MAX.into()),
+    ];
+    for (key, change) in changes {
+        let mut state: serde_json::Value = serde_json::from_str(&valid).unwrap();
+        change(&mut state);
+        std::fs::write(&path, state.to_string()).unwrap();
+        let fit = recipe.training.fit(&start, &[record()], &[record()], &mut ());
+        let error = fit.map(drop).unwrap_err();
+        assert!(error.to_string().contains(&format!("`{key}`")), "{key}: {error}");
+    }
     fuzz("checkpoint", &valid, |bytes| {
         std::fs::write(&path, bytes).unwrap();
         let fit = recipe.training.fit(&start, &[record()], &[record()], &mut ());
@@ -78,6 +96,16 @@ fn checkpoints() {
 fn trained_models() {
     let (_, _, fit, _) = trained("models");
     let weights = serde_json::to_string(&fit.model).unwrap();
+    // what once ended in an overflow, or in no memory
+    for (size, absurd) in [
+        ("\"substeps\":2", "\"substeps\":9223372036854775807"),
+        ("{\"states\":3", "{\"states\":4294967296"),
+        ("\"outputs\":1,\"blocks\"", "\"outputs\":18446744073709551615,\"blocks\""),
+    ] {
+        assert!(weights.contains(size), "{size} in {weights}");
+        let model: Augmented = serde_json::from_str(&weights.replacen(size, absurd, 1)).unwrap();
+        assert!(model.simulate(&record()).is_err(), "{absurd}");
+    }
     fuzz("trained model", &weights, |bytes| {
         if let Ok(model) = serde_json::from_slice::<Augmented>(bytes) {
             drop(model.simulate(&record()));

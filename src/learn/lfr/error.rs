@@ -60,6 +60,12 @@ pub enum LfrError {
         /// Signals along the loop; the first is repeated at the end.
         path: Vec<String>,
     },
+    /// A loop without a state in it whose gain cannot be kept below 1.
+    #[error("the algebraic loop {} goes through the baseline, whose slopes have no bound", .path.join(" -> "))]
+    Unbounded {
+        /// Signals along the loop; the first is repeated at the end.
+        path: Vec<String>,
+    },
     /// The output depends on its own prediction error in the same sample.
     #[error("the output depends on its own prediction error: {}", .path.join(" -> "))]
     ErrorLoop {
@@ -129,6 +135,9 @@ impl Explain for LfrError {
                 Self::NotFinite { .. } => "write 0 where nothing is joined",
                 Self::AlgebraicLoop { .. } => {
                     "cut the loop: let the block see a state, or remove one of the entries of S along it"
+                }
+                Self::Unbounded { .. } => {
+                    "put the network before the baseline or behind it, not both, or train without that promise: loop_gain = inf"
                 }
                 Self::ErrorLoop { .. } => {
                     "let the error enter states only, or blocks that the output does not depend on"

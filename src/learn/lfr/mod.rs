@@ -23,8 +23,10 @@ mod interconnection;
 mod march;
 mod matrix;
 mod newton;
+mod norm;
 mod number;
 mod order;
+mod posed;
 mod program;
 mod reach;
 mod rows;
@@ -50,4 +52,5 @@ pub use self::{closed_loop::Replay, matrix::Entry, sampled::Sampled, structure::
 
 pub(crate) use engine::Engine;
 pub(crate) use number::Number;
+pub(crate) use posed::Posed;
 pub(crate) use work::Work;

@@ -8,6 +8,7 @@ use super::shooting::{Arithmetic, Shooting};
 use super::validate::{Scorer, Validation};
 use super::{Augmented, TrainError};
 use crate::data::Record;
+use crate::lfr::Source;
 
 /// A part whose absence leaves the error within this share of what it was is not needed: one
 /// standard error of a root mean square over some five thousand independent samples.
@@ -116,8 +117,11 @@ pub fn warnings(fit: &Fit) -> Vec<String> {
         (!score.simulation.is_empty()).then(|| (epoch.epoch, ahead, mean(&score.simulation)))
     });
     let scored: Vec<(usize, f64, f64)> = scored.collect();
+    // with a gain of innovations errors ahead are those of predictions, which may fall alone
+    let gains = |from| matches!(from, Source::Error(_));
+    let predicts = fit.model.model.s.entries().any(|(_, from, _)| gains(from));
     let best = scored.iter().copied().min_by(|a, b| a.2.total_cmp(&b.2));
-    if let (Some(best), Some(last)) = (best, scored.last())
+    if let (Some(best), Some(last), false) = (best, scored.last(), predicts)
         && last.1 < best.1
         && last.2 > 1.1 * best.2
     {

@@ -42,6 +42,18 @@ pub struct Run {
     pub rmse: Vec<f64>,
 }
 
+impl Run {
+    /// Root mean square error of each output, where it was measured.
+    pub(super) fn errors(outputs: &[Vec<f64>], measured: &[&[f64]]) -> Vec<f64> {
+        let rmse = outputs.iter().zip(measured).map(|(own, measured)| {
+            let pairs = own.iter().zip(measured.iter()).filter(|(a, b)| !a.is_nan() && !b.is_nan());
+            let squares: Vec<f64> = pairs.map(|(a, b)| (a - b) * (a - b)).collect();
+            (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
+        });
+        rmse.collect()
+    }
+}
+
 impl Augmented {
     /// A model and an encoder with weights.
     ///
@@ -230,12 +242,7 @@ impl Augmented {
         if let Some(path) = unsolved {
             return Err(TrainError::Loop { path });
         }
-        let rmse = outputs.iter().zip(&series.y).map(|(own, measured)| {
-            let pairs = own.iter().zip(measured.iter()).filter(|(a, b)| !a.is_nan() && !b.is_nan());
-            let squares: Vec<f64> = pairs.map(|(a, b)| (a - b) * (a - b)).collect();
-            (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
-        });
-        let rmse = rmse.collect();
+        let rmse = Run::errors(&outputs, &series.y);
         Ok(Run { starts: stretches.iter().map(|s| s.start).collect(), rmse, outputs })
     }
 }

@@ -21,6 +21,13 @@ pub struct Checkpoint {
     pub every: usize,
 }
 
+impl Checkpoint {
+    /// That of a restart, beside that of the first start.
+    pub(super) fn of_restart(&self, restart: usize) -> Self {
+        Self { path: self.path.with_extension(format!("restart{restart}.json")), ..self.clone() }
+    }
+}
+
 fn hundred() -> usize {
     100
 }

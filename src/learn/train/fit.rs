@@ -49,6 +49,10 @@ pub struct Fit {
     pub ended: Ended,
     /// Steps taken back in all.
     pub rollbacks: usize,
+    /// Number of the restart that it comes from; 0: the first start.
+    pub restart: usize,
+    /// What it was chosen by on the validation records: the smaller, the better.
+    pub(super) judged: Option<f64>,
     /// Epoch at which the run was taken up again from a checkpoint.
     pub resumed: Option<usize>,
 }

@@ -7,7 +7,13 @@
 //! with d what the learned part adds to the states at points of the first simulation: b are the
 //! changes of the parameters that would do the same, so that a parameter in disguise costs what a
 //! free one costs that is moved as far (orthogonal augmentation, arXiv 2511.01321). The larger
-//! lambda, the nearer to orthogonal by construction.
+//! lambda, the nearer to orthogonal by construction; it is so where the output layers and linear
+//! parts w of the networks, along which b is linear, are moved the least way to b = 0 after every
+//! step:
+//!
+//! ```text
+//! w <- w - J' (J J')^+ b,   J = db / dw
+//! ```
 
 use nalgebra::{DMatrix, DVector};
 
@@ -29,6 +35,8 @@ pub(super) struct Orthogonal<'a> {
     weight: f64,
     /// Which parameters are weights of networks.
     weights: Vec<bool>,
+    /// Those of them that what is added is linear in.
+    linear: Vec<usize>,
 }
 
 impl<'a> Orthogonal<'a> {
@@ -42,11 +50,14 @@ impl<'a> Orthogonal<'a> {
         let bare = start.bare();
         let scales = scales(&visited);
         let Some(columns) = sensitivities(&bare, &visited, &scales)? else { return Ok(None) };
-        let mut weights = vec![];
+        let (mut weights, mut linear) = (vec![], vec![]);
         let mut nominal = vec![];
         for block in &start.model.blocks {
             match block {
                 Block::Network(learned) => {
+                    let (layout, at) = (learned.net.layout(), weights.len());
+                    let all = layout.output().chain(layout.output_bias()).chain(layout.linear());
+                    linear.extend(all.map(|i| at + i));
                     weights.extend(learned.net.weights().iter().map(|_| true))
                 }
                 Block::Baseline(baseline) => {
@@ -65,18 +76,14 @@ impl<'a> Orthogonal<'a> {
         }
         let engine = Engine::new(&start.model)?;
         let work = engine.work(1);
-        Ok(Some(Self { engine, work, visited, inverse, weight, weights }))
+        Ok(Some(Self { engine, work, visited, inverse, weight, weights, linear }))
     }
 
     /// The penalty at these parameters (those of the model come first); its slope along the
     /// weights of networks is added to `gradient`.
     pub fn add(&mut self, parameters: &[f64], gradient: Option<&mut [f64]>) -> f64 {
         let own = &parameters[..self.weights.len()];
-        let nothing = own.iter().zip(&self.weights);
-        let nothing: Vec<f64> = nothing.map(|(w, net)| if *net { 0.0 } else { *w }).collect();
-        let with = self.next(own);
-        let d = DVector::from_vec(with) - DVector::from_vec(self.next(&nothing));
-        let changes = &self.inverse * d;
+        let changes = self.changes(own);
         let value = 0.5 * self.weight * changes.norm_squared();
         if let Some(gradient) = gradient {
             let along = self.inverse.tr_mul(&changes) * self.weight;
@@ -86,6 +93,38 @@ impl<'a> Orthogonal<'a> {
             each.filter(|(_, net)| **net).for_each(|((to, slope), _)| *to += slope);
         }
         value
+    }
+
+    /// b, at the parameters of the model.
+    fn changes(&mut self, own: &[f64]) -> DVector<f64> {
+        let nothing = own.iter().zip(&self.weights);
+        let nothing: Vec<f64> = nothing.map(|(w, net)| if *net { 0.0 } else { *w }).collect();
+        let with = self.next(own);
+        let d = DVector::from_vec(with) - DVector::from_vec(self.next(&nothing));
+        &self.inverse * d
+    }
+
+    /// Moves parameters (those of the model come first) to where what is added is orthogonal.
+    pub fn project(&mut self, parameters: &mut [f64]) {
+        let own = parameters[..self.weights.len()].to_vec();
+        let changes = self.changes(&own);
+        let rows = (0..self.inverse.nrows()).map(|j| {
+            let along: Vec<f64> = self.inverse.row(j).iter().copied().collect();
+            let mut slopes = vec![0.0; own.len()];
+            self.back(&own, &along, &mut slopes);
+            let picked = self.linear.iter().map(|&at| slopes[at]);
+            DVector::from_iterator(self.linear.len(), picked).transpose()
+        });
+        let rows: Vec<_> = rows.collect();
+        if rows.is_empty() {
+            return;
+        }
+        let slopes = DMatrix::from_rows(&rows);
+        let Ok(inverse) = slopes.pseudo_inverse(1e-10) else { return };
+        let moved = inverse * changes;
+        if moved.iter().all(|step| step.is_finite()) {
+            self.linear.iter().zip(moved.iter()).for_each(|(&at, step)| parameters[at] -= step);
+        }
     }
 
     /// Next states at every point, state by state.

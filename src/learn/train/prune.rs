@@ -5,6 +5,7 @@
 use super::ablate::{Ablation, ablate, without};
 use super::fit::{Fit, Follow};
 use super::groups::Group;
+use super::innovations::Gain;
 use super::scale::Units;
 use super::task::Task;
 use super::validate::Scorer;
@@ -58,11 +59,15 @@ impl Trainer {
                 order.push((again.error(&without(&best.0, &groups[i]))?, i));
             }
             order.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (_, i) in order {
+            for (plain, i) in order {
                 let mut out: Vec<&Group> = gone.iter().map(|&other| &groups[other]).collect();
                 out.push(&groups[i]);
                 let start = without(&best.0, &groups[i]);
-                let Some(other) = again.learn(&start, &out, follow)? else { break 'all };
+                let Some(mut other) = again.learn(&start, &out, follow)? else { break 'all };
+                // learning again may lead away from what was not learned from
+                if plain < other.1 {
+                    other = (start, plain);
+                }
                 if other.1 <= AGAIN * best.1 {
                     best = other;
                     gone.push(i);
@@ -112,7 +117,10 @@ impl<'a> Again<'a> {
     ) -> Result<Option<(Vec<f64>, f64)>, TrainError> {
         let held = held.iter().flat_map(|group| group.entries.iter().copied()).collect();
         let more = self.model.encoder.weights().len();
-        let units = Units::of(&self.model.model, more, self.trainer.penalty).holding(held);
+        let units = Units::of(&self.model.model, more, self.trainer.penalty)
+            .holding(held)
+            .posed(self.trainer.posed(self.model)?)
+            .gaining(Gain::of(self.model));
         let mut theta = units.enter(parameters);
         let (steps, lbfgs) = (self.trainer.sparse.refit, Lbfgs::default());
         let mut stopped = |done: usize, of: usize| follow.on_step(done, of);
@@ -121,7 +129,10 @@ impl<'a> Again<'a> {
             return Ok(None);
         }
         units.project(&mut theta);
-        let parameters = units.leave(&theta);
+        let mut parameters = units.leave(&theta);
+        if self.trainer.orthogonal {
+            self.task.loss.orthogonalise(&mut parameters);
+        }
         let error = self.error(&parameters)?;
         Ok(Some((parameters, error)))
     }

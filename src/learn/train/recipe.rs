@@ -11,6 +11,7 @@ use crate::lfr::{Baseline, ClosedLoop, Sampled, Scales, Structure};
 use crate::system::System;
 
 use super::hidden::start_from_data;
+use super::innovations::add_gain;
 use super::looped::Looped;
 use super::{Augmented, TrainError, Trainer};
 
@@ -133,7 +134,15 @@ impl Recipe {
         if augmented_states > 0 && self.augmented_start == AugmentedStart::Data {
             started.notes.extend(start_from_data(&mut model, encoder.as_mut(), &known)?);
         }
-        let start = Augmented::new(model, encoder)?;
+        let mut start = Augmented::new(model, encoder)?;
+        if self.training.innovations > 0.0 {
+            if closed.is_some() {
+                let found = self.training.innovations.to_string();
+                let expected = "0 for a plant in its loop";
+                return Err(TrainError::Setting { name: "innovations", found, expected });
+            }
+            add_gain(&mut start)?;
+        }
         Ok((if let Some(closed) = closed { start.in_loop(closed)? } else { start }, started))
     }
 

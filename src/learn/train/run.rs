@@ -28,6 +28,16 @@ pub(crate) struct Simulated {
 /// Takes one state: its number, the sample of the course, its value.
 pub(crate) type State<'s> = &'s mut dyn FnMut(usize, usize, f64);
 
+/// Where a run comes from, and what it sees on its way.
+pub(crate) enum From<'g, E: Number> {
+    /// The encoder's estimates; prediction errors are taken as 0.
+    Guess(&'g Guess<E>),
+    /// The same, with prediction errors where something was measured.
+    Following(&'g Guess<E>),
+    /// These states, one series each; prediction errors are taken as 0.
+    States(&'g [Vec<f64>]),
+}
+
 /// Simulates all stretches side by side, with prediction errors taken as 0; gives the loop
 /// of S that was not solved, if there was one.
 pub(crate) fn run<E: Number>(
@@ -35,20 +45,49 @@ pub(crate) fn run<E: Number>(
     guess: &Guess<E>,
     course: &Course<E>,
     stretches: &[Stretch],
+    each: impl FnMut(Simulated),
+    state: Option<State<'_>>,
+) -> Option<Vec<String>> {
+    run_from(engine, &From::Guess(guess), course, stretches, each, state)
+}
+
+/// The same from elsewhere.
+pub(crate) fn run_from<E: Number>(
+    engine: &Engine<'_, E>,
+    from: &From<'_, E>,
+    course: &Course<E>,
+    stretches: &[Stretch],
     mut each: impl FnMut(Simulated),
     mut state: Option<State<'_>>,
 ) -> Option<Vec<String>> {
+    let sees = matches!(from, From::Following(_));
     let program = &engine.program;
     // two frames are enough: the present sample's and the one before, where loops look for
     // their last solution
-    let (mut work, mut guess_work) = (engine.work(2), guess.work());
+    let mut work = engine.work(2);
+    let mut guess_work = match from {
+        From::Guess(guess) | From::Following(guess) => Some(guess.work()),
+        From::States(_) => None,
+    };
     let (before, now, next) = (work.frame(0), work.frame(1), work.frame(2));
     for group in stretches.chunks(E::BLOCK) {
         let mut lanes = group.to_vec();
         lanes.resize(E::BLOCK, group[group.len() - 1]);
         let starts: Vec<usize> = lanes.iter().map(|stretch| stretch.start).collect();
         work.rows[before..now].fill(Row::zero());
-        guess.forward(course, &starts, &mut guess_work, &mut work.rows[now..now + program.states]);
+        let first = &mut work.rows[now..now + program.states];
+        match (from, &mut guess_work) {
+            (From::Guess(guess) | From::Following(guess), Some(room)) => {
+                guess.forward(course, &starts, room, first);
+            }
+            (From::States(known), _) => {
+                for (row, series) in first.iter_mut().zip(known.iter()) {
+                    let each = row.lanes_mut().iter_mut().zip(&starts);
+                    each.for_each(|(to, &k)| *to = E::of(series[k]));
+                }
+            }
+            _ => {}
+        }
         let longest = group.iter().map(|s| s.end.saturating_sub(s.start)).max().unwrap_or(0);
         for row in &mut work.measured {
             row.lanes_mut().fill(E::of(f64::NAN));
@@ -66,6 +105,12 @@ pub(crate) fn run<E: Number>(
             }
             let time = work.time.lanes_mut().iter_mut();
             time.zip(&lanes).for_each(|(to, s)| *to = course.time[at(s)]);
+            if sees {
+                for (row, series) in work.measured.iter_mut().zip(&course.y) {
+                    let row = row.lanes_mut().iter_mut();
+                    row.zip(&lanes).for_each(|(to, s)| *to = series[at(s)]);
+                }
+            }
             engine.forward(&mut work, 1);
             if let Some(state) = &mut state {
                 for (i, row) in work.rows[now..now + program.states].iter().enumerate() {

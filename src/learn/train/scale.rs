@@ -1,10 +1,11 @@
 //! The optimiser's own units: weights as they are, physical parameters relative to their
 //! nominal values, which they may be drawn towards.
 
-use crate::lfr::{Block, Interconnection};
+use crate::lfr::{Block, Interconnection, Posed};
 use crate::optimise::Bounds;
 
 use super::groups::Group;
+use super::innovations::Gain;
 use super::sparse::{SMOOTH, Sparse};
 
 /// Root mean square of a group's weights at which re-weighting leaves its penalty as it is.
@@ -26,6 +27,10 @@ pub(crate) struct Units {
     s: f64,
     /// Entries that stay as they are.
     held: Vec<usize>,
+    /// From free numbers to parameters under which every loop can be solved.
+    posed: Posed,
+    /// The gain of innovations.
+    gain: Option<Gain>,
 }
 
 impl Units {
@@ -51,7 +56,17 @@ impl Units {
         }
         let first = model.count() - model.s.learned().count();
         let entries = (first..model.count()).map(|at| (at, 1.0)).collect();
-        Self { unit, physical, penalty, groups: vec![], entries, s: 0.0, held: vec![] }
+        Self {
+            unit,
+            physical,
+            penalty,
+            groups: vec![],
+            entries,
+            s: 0.0,
+            held: vec![],
+            posed: Posed::default(),
+            gain: None,
+        }
     }
 
     /// The same with groups of weights drawn to 0.
@@ -64,6 +79,19 @@ impl Units {
         });
         self.groups = drawn.collect();
         self.s = sparse.s;
+        self
+    }
+
+    /// The same with limits that the parameters keep to, whatever the optimiser does.
+    pub fn posed(mut self, posed: Posed) -> Self {
+        self.posed = posed;
+        self
+    }
+
+    /// The same with a gain of innovations, in units of states over outputs.
+    pub fn gaining(mut self, gain: Gain) -> Self {
+        gain.units().for_each(|(at, unit)| self.unit[at] = unit);
+        self.gain = Some(gain);
         self
     }
 
@@ -109,6 +137,12 @@ impl Units {
 
     /// And back.
     pub fn leave(&self, values: &[f64]) -> Vec<f64> {
+        let mut all = self.raw(values);
+        self.posed.enter(&mut all);
+        all
+    }
+
+    fn raw(&self, values: &[f64]) -> Vec<f64> {
         values.iter().zip(&self.unit).map(|(value, unit)| value * unit).collect()
     }
 
@@ -116,6 +150,7 @@ impl Units {
     /// penalty's, and gives the penalty: half of `penalty` times the squared relative distance
     /// from the nominal values (co-estimation, Hoekstra et al., footnote 2).
     pub fn penalise(&self, theta: &[f64], gradient: &mut [f64]) -> f64 {
+        self.posed.back(&self.raw(theta), gradient);
         gradient.iter_mut().zip(&self.unit).for_each(|(g, unit)| *g *= unit);
         let mut sum = 0.0;
         for &(at, nominal, _) in &self.physical {
@@ -141,10 +176,15 @@ impl Units {
         sum
     }
 
-    /// Moves physical parameters back between their bounds.
+    /// Moves physical parameters back between their bounds, and a gain of innovations to where the
+    /// predictor forgets.
     pub fn project(&self, theta: &mut [f64]) {
         for &(at, _, [min, max]) in &self.physical {
             theta[at] = theta[at].max(min).min(max);
+        }
+        if let Some(gain) = &self.gain {
+            let share = gain.share(&self.raw(theta));
+            gain.units().for_each(|(at, _)| theta[at] *= share);
         }
     }
 }

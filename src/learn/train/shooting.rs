@@ -29,6 +29,8 @@ pub struct MultipleShooting<'a> {
     starts: Vec<usize>,
     parameters: usize,
     orthogonal: Option<Box<Orthogonal<'a>>>,
+    /// Weight of the likelihood of innovations.
+    innovations: f64,
 }
 
 enum Kernel<'a> {
@@ -88,7 +90,7 @@ impl<'a> MultipleShooting<'a> {
             }
         };
         let parameters = augmented.parameters().len();
-        Ok(Self { kernel, starts, parameters, orthogonal: None })
+        Ok(Self { kernel, starts, parameters, orthogonal: None, innovations: 0.0 })
     }
 
     /// Lets samples count as much as given, output by output over all records one after the
@@ -103,6 +105,20 @@ impl<'a> MultipleShooting<'a> {
     /// Adds a penalty on what the learned part does in the place of parameters.
     pub(super) fn penalise(&mut self, orthogonal: Orthogonal<'a>) {
         self.orthogonal = Some(Box::new(orthogonal));
+    }
+
+    /// Moves parameters to where the learned part does nothing that parameters could do, where a
+    /// penalty on that was added.
+    pub(super) fn orthogonalise(&mut self, parameters: &mut [f64]) {
+        if let Some(orthogonal) = &mut self.orthogonal {
+            orthogonal.project(parameters);
+        }
+    }
+
+    /// Adds the likelihood of innovations with this weight; the loss itself is then that of the
+    /// simulation, in which the model sees no errors.
+    pub(super) fn follow_innovations(&mut self, weight: f64) {
+        self.innovations = weight;
     }
 
     /// Samples in a section from now on, at most as many as there is room for.
@@ -182,11 +198,11 @@ impl<'a> MultipleShooting<'a> {
         let mut outcome = match &mut self.kernel {
             Kernel::Double(sections, course) => {
                 sections.set(parameters);
-                sections.run(course, starts, gradient.as_deref_mut())
+                sections.run_with(self.innovations, course, starts, gradient.as_deref_mut())
             }
             Kernel::Single(sections, course) => {
                 sections.set(parameters);
-                sections.run(course, starts, gradient.as_deref_mut())
+                sections.run_with(self.innovations, course, starts, gradient.as_deref_mut())
             }
         };
         if let Some(orthogonal) = &mut self.orthogonal {

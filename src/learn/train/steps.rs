@@ -6,6 +6,7 @@ use crate::optimise::{AdamState, Named};
 use super::batch::{batches, shuffled};
 use super::checkpoint::State;
 use super::fit::{Ended, Epoch, Fit, Follow};
+use super::innovations::{Gain, judged};
 use super::scale::Units;
 use super::task::Task;
 use super::validate::Scorer;
@@ -47,7 +48,9 @@ impl<'a> Steps<'a> {
             records => Some(Scorer::new(start, records, &trainer.validation, shooting)?),
         };
         let mut units = Units::of(&start.model, start.encoder.weights().len(), trainer.penalty)
-            .sparse(&trainer.sparse, &start.groups());
+            .sparse(&trainer.sparse, &start.groups())
+            .posed(trainer.posed(start)?)
+            .gaining(Gain::of(start));
         let theta = units.enter(&start.parameters());
         let known = match &trainer.checkpoint {
             Some(checkpoint) => State::read(&checkpoint.path, fingerprint, theta.len())?,
@@ -154,12 +157,23 @@ impl<'a> Steps<'a> {
             self.save(true)?;
             return Ok(true);
         }
-        self.units.project(&mut state.theta);
+        self.keep();
+        let state = &mut self.state;
         (state.epoch, state.step, state.loss) = (state.epoch + 1, 0, 0.0);
         state.legs += usize::from(finishing);
         self.close(self.state.epoch, Some(done.loss))?;
         self.save(true)?;
         Ok(self.report(follow))
+    }
+
+    /// Brings parameters back to where they have to be.
+    fn keep(&mut self) {
+        self.units.project(&mut self.state.theta);
+        if self.trainer.orthogonal {
+            let mut parameters = self.units.leave(&self.state.theta);
+            self.loss.orthogonalise(&mut parameters);
+            self.state.theta = self.units.enter(&parameters);
+        }
     }
 
     /// One step, or one step back where the last one led to no finite loss.
@@ -173,10 +187,10 @@ impl<'a> Steps<'a> {
             state.before.copy_from_slice(&state.theta);
             let optimiser = &self.trainer.optimiser;
             optimiser.batch_step(&mut state.adam, &mut state.theta, &gradient)?;
-            self.units.project(&mut state.theta);
             state.in_a_row = 0;
             state.loss += loss;
             state.step += 1;
+            self.keep();
             return Ok(());
         }
         // back to where the last loss was finite, else to the best model, with smaller steps
@@ -208,7 +222,8 @@ impl<'a> Steps<'a> {
             Some(scorer) if due => Some(scorer.score(&parameters)?),
             _ => None,
         };
-        let whole = score.as_ref().map(|score| score.whole(&self.deviations));
+        let weight = self.trainer.innovations;
+        let whole = score.as_ref().map(|score| judged(score, &self.deviations, weight));
         let best = whole.is_some_and(|whole| {
             whole.is_finite() && self.state.best.as_ref().is_none_or(|(best, ..)| whole < *best)
         });
@@ -262,7 +277,8 @@ impl<'a> Steps<'a> {
             None => (&state.theta, state.epoch),
         };
         model.set_parameters(&units.leave(theta))?;
+        let judged = state.best.as_ref().map(|(judged, ..)| *judged);
         let (history, rollbacks) = (state.history, state.rollbacks);
-        Ok(Fit { model, epoch, history, ended, rollbacks, resumed })
+        Ok(Fit { model, epoch, history, ended, rollbacks, restart: 0, judged, resumed })
     }
 }

@@ -7,6 +7,9 @@ use super::shooting::Shooting;
 use super::{Augmented, MultipleShooting, TrainError, Trainer};
 use crate::data::Record;
 
+/// Weight of the penalty on what a learned part does in the place of parameters, where it must not.
+const HELD: f64 = 1e3;
+
 /// The loss, prepared.
 pub(super) struct Task<'a> {
     pub loss: MultipleShooting<'a>,
@@ -35,11 +38,14 @@ impl<'a> Task<'a> {
         if let Some(counts) = counts {
             loss.count_by(counts);
         }
-        if let (true, Some(record)) = (trainer.disguise > 0.0, training.first())
-            && let Some(penalty) = Orthogonal::new(start, record, trainer.disguise)?
+        // between two steps the penalty holds what every step is brought back to
+        let weight = if trainer.orthogonal { trainer.disguise.max(HELD) } else { trainer.disguise };
+        if let (true, Some(record)) = (weight > 0.0, training.first())
+            && let Some(penalty) = Orthogonal::new(start, record, weight)?
         {
             loss.penalise(penalty);
         }
+        loss.follow_innovations(trainer.innovations);
         Ok(Self { loss, deviations, shooting })
     }
 }

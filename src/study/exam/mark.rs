@@ -1,7 +1,7 @@
 //! Marks answers of any tool against the truth of an exam that was written.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Component, Path};
 
 use super::folder::{CASES, EXAM, TRUTH, Written, sealed};
 use super::marks::removed;
@@ -63,6 +63,16 @@ impl Written {
             let answer = given.remove(&seal.case);
             let share = match &answer {
                 Some((Answer { extended_model: Some(model), .. }, beside)) => {
+                    // answers may be a stranger's: nothing but what was handed in is opened
+                    let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
+                    if !Path::new(model).components().all(inside) {
+                        let reason = format!(
+                            "`extended_model` of case {} is `{model}`, which is not in the folder of \
+                             the answers or below",
+                            seal.case
+                        );
+                        return Err(StudyError::merge(answers, reason));
+                    }
                     let extended = load(&beside.join(model))?;
                     let baseline = load(&folder.join(CASES).join(&key).join("model.toml"))?;
                     let third = third(&truth_folder.join("third.csv"), &baseline)?;
