@@ -11,7 +11,7 @@ const LONGER: [&str; 14] = [
     "src/core/effect/written.rs",
     "src/core/data/error.rs",
     "src/diagnose/finding.rs",
-    "src/diagnose/problem.rs",
+    "src/diagnose/fit/problem.rs",
     "src/learn/encoder/baseline.rs",
     "src/learn/lfr/engine.rs",
     "src/learn/lfr/program.rs",
