@@ -27,15 +27,15 @@ pub(crate) struct Tracks<'a, 'b> {
 }
 
 impl<'a, 'b> Tracks<'a, 'b> {
-    /// Searches, and fits what was found to all data; the other track is none.
-    pub fn run(mut self) -> Option<(Finished, Option<Finished>)> {
+    /// Searches, and fits what was found to all data.
+    pub fn run(mut self) -> Option<Finished> {
         let (nominal, allowed, most, watch) = (self.nominal, self.allowed, self.most, self.watch);
         let Searched { found, free, nuisance } =
             search::search(self.problem, nominal, allowed, most, self.start, watch)?;
         let track = if free { Track::ParametersFree } else { Track::ParametersTrusted };
         let chosen = self.finish(track, found, nuisance)?;
         let chosen = self.off_the_ridge(chosen)?;
-        Some((self.doubting(chosen), None))
+        Some(self.doubting(chosen))
     }
 
     /// A model fitted to all data, and its outputs.

@@ -20,7 +20,6 @@ mod findings;
 mod fit;
 mod innovations;
 mod mended;
-mod noise_inside;
 mod plan;
 mod prepare;
 mod run;

@@ -77,13 +77,13 @@ impl Diagnosis<'_> {
         let step = first.sampling_time;
         let count = stretches.len();
         let mut prepared = Prepared::in_stretches(self.system, &stretches, FIT)?;
-        let (chosen, other) = prepared.search(&self.allowed, self.max_causes, watch)?;
+        let chosen = prepared.search(&self.allowed, self.max_causes, watch)?;
         watch.tell(0.97, "measuring the gain");
         let test = TestData { records: tested, counted: Counted::All };
         let begin: Vec<usize> = begin.iter().map(|&(r, from)| firsts[r] + from).collect();
         let (start, fixed) = (&prepared.start, &self.allowed.fixed);
         let from = Source { start, test: &test, used: &stretches, firsts: &begin, fixed };
-        let searched = prepared.context().findings(&chosen, other.as_ref(), &from)?;
+        let searched = prepared.context().findings(&chosen, None, &from)?;
         let notes = vec![Note::Stretches { length, seconds: length as f64 * step, count }];
         Ok(Looked { searched, faults, notes, single_records: vec![] })
     }

@@ -59,14 +59,16 @@ impl Diagnosis<'_> {
             let own = self.search(one, None, self.max_causes, watch)?;
             let first = own.causes.iter().find(|cause| !cause.is_data_fault());
             let (Some(first), Verdict::CausesFound) = (first, own.verdict) else { continue };
+            let with = runs(&own.extended);
             let others: f64 = of_bare.iter().sum::<f64>() - of_bare[i];
-            if !(left(record, &outputs(&own.extended, record)) + others < together) {
+            if !(left(record, &with[i]) + others < together) {
                 continue;
             }
-            let said: Option<Vec<InRecord>> = records
-                .iter()
-                .zip(&names)
-                .map(|(record, name)| Some(InRecord::of(name, self.weight(&own.extended, record)?)))
+            let said: Option<Vec<InRecord>> = (0..records.len())
+                .map(|r| {
+                    let weight = weight(&records[r], bare[r].as_ref()?, with[r].as_ref()?);
+                    Some(InRecord::of(&names[r], weight))
+                })
                 .collect();
             let Some(said) = said else { continue };
             let shows = said.iter().any(|r| r.record == *name && r.shows == Some(true));
@@ -78,27 +80,6 @@ impl Diagnosis<'_> {
             found.push(SingleRecord { record: name.clone(), cause });
         }
         Ok(found)
-    }
-
-    /// Weight of an extended model against the baseline on one record, see [`InRecord`]; `None`
-    /// where one of them cannot be simulated.
-    fn weight(&self, extended: &System, record: &Record) -> Option<Option<(f64, f64)>> {
-        let (bare, with) = (outputs(self.system, record)?, outputs(extended, record)?);
-        let (mut ff, mut fr) = (vec![0.0; record.len()], vec![0.0; record.len()]);
-        for output in &record.outputs {
-            let (Some(a), Some(b)) = (bare.get(&output.name), with.get(&output.name)) else {
-                continue;
-            };
-            let off: Vec<f64> = output.values.iter().zip(a).map(|(y, a)| y - a).collect();
-            let known: Vec<f64> = off.iter().copied().filter(|v| v.is_finite()).collect();
-            let over = rms(&known).max(f64::MIN_POSITIVE).powi(-2);
-            for k in (0..off.len()).filter(|&k| off[k].is_finite()) {
-                let f = b[k] - a[k];
-                ff[k] += over * f * f;
-                fr[k] += over * f * off[k];
-            }
-        }
-        Some(crate::statistics::weight(&ff, &fr))
     }
 }
 
@@ -137,4 +118,23 @@ fn squares(record: &Record, run: Option<&Outputs>, scales: &BTreeMap<String, f64
         over * off(output, run).map(|v| v * v).sum::<f64>()
     };
     record.outputs.iter().map(one).sum()
+}
+
+/// Weight of an extended model's run against the baseline's on one record, see [`InRecord`].
+fn weight(record: &Record, bare: &Outputs, with: &Outputs) -> Option<(f64, f64)> {
+    let (mut ff, mut fr) = (vec![0.0; record.len()], vec![0.0; record.len()]);
+    for output in &record.outputs {
+        let (Some(a), Some(b)) = (bare.get(&output.name), with.get(&output.name)) else {
+            continue;
+        };
+        let off: Vec<f64> = output.values.iter().zip(a).map(|(y, a)| y - a).collect();
+        let known: Vec<f64> = off.iter().copied().filter(|v| v.is_finite()).collect();
+        let over = rms(&known).max(f64::MIN_POSITIVE).powi(-2);
+        for k in (0..off.len()).filter(|&k| off[k].is_finite()) {
+            let f = b[k] - a[k];
+            ff[k] += over * f * f;
+            fr[k] += over * f * off[k];
+        }
+    }
+    crate::statistics::weight(&ff, &fr)
 }

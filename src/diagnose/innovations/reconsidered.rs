@@ -53,22 +53,18 @@ fn reconsidered(
     prepared: &Prepared<'_>,
     allowed: &Allowed,
     most: usize,
-    answer: Answer,
+    answer: Finished,
     watch: &dyn Watch,
 ) -> Answer {
     let many = prepared.problem.drive.segments.len() >= MANY;
-    if !allowed.noise_inside
-        || most == 0
-        || many
-        || watch.stopped()
-        || is_white(prepared, &answer.0)
+    if !allowed.noise_inside || most == 0 || many || watch.stopped() || is_white(prepared, &answer)
     {
-        return answer;
+        return (answer, None);
     }
     watch.tell(0.9, "asking for noise inside the plant");
-    match by_innovations(prepared, allowed, most, &answer.0, watch) {
-        Some(better) => (better, Some(answer.0)),
-        None => answer,
+    match by_innovations(prepared, allowed, most, &answer, watch) {
+        Some(better) => (better, Some(answer)),
+        None => (answer, None),
     }
 }
 

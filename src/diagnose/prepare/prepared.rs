@@ -103,13 +103,13 @@ impl<'a> Prepared<'a> {
         Context { system: problem.system, problem, nominal, joined }
     }
 
-    /// Searches both tracks; the chosen one comes first.
+    /// What a search finds, fitted to all data.
     pub fn search(
         &mut self,
         allowed: &Allowed,
         most: usize,
         watch: &dyn Watch,
-    ) -> Result<(Finished, Option<Finished>), DiagnoseError> {
+    ) -> Result<Finished, DiagnoseError> {
         let found = self.tracks(allowed, most, watch).run();
         found.ok_or_else(|| self.diverges())
     }

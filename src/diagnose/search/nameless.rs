@@ -78,8 +78,8 @@ fn drawing<'s>(study: &'s Study<'_, '_>, base: &Fit) -> Drawing<'s, 's> {
     Drawing { problem: study.problem, nominal: study.nominal, nuisance: study.nuisance(base.free) }
 }
 
-/// Free curves beside a model, and the laws that the leading ones are read as; those stay below `top`
-/// only if they are near it.
+/// Free curves beside a model, and the laws that the leading ones are read as; fits that are hopelessly
+/// below `top` are let go.
 fn curves(study: &mut Study<'_, '_>, base: &Fit, top: f64) {
     let Some(y) = study.problem.simulate(&base.model, Grain::Coarse) else { return };
     let mut sketches = drawing(study, base).sketches(&base.model, &y);

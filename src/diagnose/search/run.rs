@@ -73,10 +73,10 @@ pub(crate) fn search(
         let before = study.beam.best().map(Fit::key);
         nameless(&mut study);
         let named = |fit: &&Fit| !fit.model.added.iter().any(|added| added.cause.is_drawn());
-        let now = study.beam.best().filter(named).map(|fit| (fit.free, fit.key()));
-        if let Some((free, _)) = now.filter(|(_, key)| before.as_ref() != Some(key)) {
+        let now = study.beam.best().filter(named).map(Fit::key);
+        if let Some(key) = now.filter(|key| before.as_ref() != Some(key)) {
             // what a curve is read as was not searched on from
-            searched(&mut study, free, 1);
+            searched(&mut study, key.free, 1);
         }
     }
     watch.tell(0.95, "checking what was named");
