@@ -34,7 +34,7 @@ const SEVERAL: usize = 3;
 const TOGGLED: (usize, f64) = (6, 5.0);
 const POLISHED: f64 = 8.0;
 /// Distance from the best within which fits are compared by the integrator's own steps, and iterations.
-const SETTLED: (f64, usize) = (12.0, 3);
+const SETTLED: (f64, usize) = (12.0, 8);
 
 /// What a search ended with: causes, whether parameters are free, and what moves beside causes.
 pub(crate) struct Searched {

@@ -152,15 +152,17 @@ impl<'a, 'b> Study<'a, 'b> {
         }
     }
 
-    /// Fits the leading models by the integrator's own steps, so that none is favoured by a correction
-    /// that was made about another.
+    /// Fits the leading models to their end, by the integrator's own steps: none is favoured by a
+    /// correction that was made about another, or by iterations that another did not have.
     pub fn settle(&mut self, within: f64, iterations: usize) {
         let models: Vec<Model> = self.beam.within(within).map(|fit| fit.model.clone()).collect();
-        if self.problem.has_own_steps() || models.len() < 2 {
+        if models.len() < 2 {
             return;
         }
-        self.problem.take_own_steps(&models.iter().collect::<Vec<_>>());
-        self.judge_again();
+        if !self.problem.has_own_steps() {
+            self.problem.take_own_steps(&models.iter().collect::<Vec<_>>());
+            self.judge_again();
+        }
         for free in [false, true] {
             let close = self.beam.within(within).filter(|fit| fit.free == free);
             let wish = |fit: &Fit| Wish { model: fit.model.clone(), noise: fit.noise.clone() };
