@@ -1,10 +1,11 @@
 //! Sums of laws at one place, F(z) = f_1(z) + f_2(z) + ...: one cause with several parts.
 
 use crate::candidates::coordinate::along;
+use crate::candidates::law_regression::hills;
 use crate::effect::curve;
 use crate::fit::problem::{Grain, Model, Problem};
 use crate::prepare::operating_range::Nominal;
-use crate::statistics::rms;
+use crate::statistics::dot;
 
 impl Model {
     /// Its causes by number, laws of one place together, places in the order of their first law.
@@ -33,8 +34,14 @@ impl Model {
     }
 }
 
-/// The laws of one place by the size of what they do along the record, the largest first.
-pub(crate) fn by_size(
+/// Samples of a coordinate that laws are compared on, and the share of the squares of a curve by which
+/// laws that are as near to it may differ.
+const SAMPLES: usize = 400;
+const AS_NEAR: f64 = 0.01;
+
+/// The laws of one place by how near each alone would come to their sum along the record, the nearest
+/// first; of those as near the plainest.
+pub(crate) fn by_likeness(
     problem: &Problem<'_>,
     nominal: &Nominal,
     model: &Model,
@@ -45,9 +52,15 @@ pub(crate) fn by_size(
     }
     let z = along(problem, nominal, model, &model.added[own[0]].cause, Grain::Fine);
     let Some(z) = z else { return own };
-    let step = problem.step(Grain::Fine);
-    let size = |i: usize| rms(&model.sum(&[i], step, &z));
-    own.sort_by(|&a, &b| size(b).total_cmp(&size(a)));
+    let count = SAMPLES.min(z.len());
+    let z: Vec<f64> = (0..count).map(|i| z[i * z.len() / count]).collect();
+    let sum = model.sum(&own, problem.step(Grain::Fine), &z);
+    let unit = AS_NEAR * dot(&sum, &sum).max(f64::MIN_POSITIVE);
+    let off = |i: usize| {
+        let left = hills(&model.added[i].cause, &z, &sum).first().map_or(f64::INFINITY, |h| h.1);
+        (left / unit) as u64
+    };
+    own.sort_by_cached_key(|&i| (off(i), model.added[i].cause.order()));
     own
 }
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::naming::title_of;
-use crate::candidates::sums::by_size;
+use crate::candidates::sums::by_likeness;
 use crate::error::DiagnoseError;
 use crate::findings::cause::{Alternative, Cause, ColumnFault, LawPart, Site, Value, Wording};
 use crate::findings::context::Context;
@@ -66,7 +66,7 @@ impl Context<'_, '_> {
         // all of them together do no less than one of them
         let score = own.iter().map(|&i| chosen.found.slots[i].score).fold(0.0, f64::max);
         let p_value = Some(either(on_test(without, by.after), score, candidates));
-        let own = by_size(self.problem, self.nominal, model, own);
+        let own = by_likeness(self.problem, self.nominal, model, own);
         let mut parts: Vec<LawPart> = own.iter().map(|&i| self.part(chosen, i)).collect();
         let (cause, slot) = (&model.added[own[0]].cause, &chosen.found.slots[own[0]]);
         let values = parts[0].parameters.clone();

@@ -16,10 +16,9 @@ use super::study::Study;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::coordinate::along;
 use crate::candidates::free_curve::{Drawing, NAME, knots_of};
+use crate::candidates::law_regression::hills;
 use crate::effect::curve;
-use crate::estimate::law::regressions;
 use crate::fit::problem::{Grain, Model};
-use crate::optimise::Bounds;
 use crate::prepare::input_dependence::DEPENDS;
 
 /// Iterations of a curve.
@@ -103,7 +102,7 @@ fn fit_laws(
 ) {
     let mut wishes = vec![];
     for cause in study.candidates.iter().filter(|c| c.is_at(here) && c.is_curve()) {
-        for knobs in hills(cause, z, w) {
+        for (knobs, _) in hills(cause, z, w).into_iter().take(HILLS) {
             wishes.push(Wish { model: rest.model.with(cause, knobs), noise: rest.noise.clone() });
         }
     }
@@ -134,11 +133,4 @@ fn free_curve(study: &mut Study<'_, '_>, best: &Fit, own: &[usize]) -> Option<Fi
         study.beam.keep(most.clone());
     }
     Some(most)
-}
-
-/// Where a law meets a curve best, coefficients within their signs.
-fn hills(cause: &Candidate, z: &[f64], w: &[f64]) -> Vec<Vec<f64>> {
-    let (lower, upper) = (0..cause.card.knobs.len()).map(|i| cause.bounds(i)).unzip();
-    let found = regressions(cause.shape.as_ref(), &cause.starts, &Bounds { lower, upper }, (z, w));
-    found.into_iter().take(HILLS).map(|(knobs, _)| knobs).collect()
 }

@@ -34,6 +34,11 @@ fn open(law: &dyn CandidateEffect) -> impl Iterator<Item = usize> {
     (0..law.card().knobs.len()).filter(is)
 }
 
+/// Knobs of a part that are fitted within a range: those that it does not hold at one value.
+fn free<'a>(part: &'a Part, range: &'a Bounds) -> impl Iterator<Item = usize> + 'a {
+    open(part.law.as_ref()).filter(|&i| range.lower[i] < range.upper[i])
+}
+
 /// A law at many coordinates, at one value of its knobs.
 fn values(law: &dyn CandidateEffect, knobs: &[f64], z: &[f64]) -> Vec<f64> {
     let packs = z.len().div_ceil(F64x8::LANES);
@@ -113,13 +118,24 @@ fn squares(values: &[f64]) -> f64 {
 }
 
 /// Coefficients by linear regression, the other knobs being what they are.
-fn regressed(parts: &[Part], start: &[Vec<f64>], z: &[f64], w: &[f64]) -> Option<Vec<Vec<f64>>> {
+fn regressed(
+    parts: &[Part],
+    start: &[Vec<f64>],
+    ranges: &[Bounds],
+    (z, w): (&[f64], &[f64]),
+) -> Option<Vec<Vec<f64>>> {
     let mut columns = vec![];
     let mut places = vec![];
-    for (number, (part, start)) in parts.iter().zip(start).enumerate() {
+    let mut right = DVector::from_column_slice(w);
+    for (number, ((part, start), range)) in parts.iter().zip(start).zip(ranges).enumerate() {
         let knobs = part.law.card().knobs;
         let coefficient = |i: &usize| knobs[*i].role == Role::Coefficient;
-        for i in open(part.law.as_ref()).filter(coefficient) {
+        let own: Vec<usize> = free(part, range).filter(coefficient).collect();
+        // what held coefficients make is there already
+        let mut held = start.clone();
+        own.iter().for_each(|&i| held[i] = 0.0);
+        right -= DVector::from_vec(values(part.law.as_ref(), &held, z));
+        for i in own {
             let mut only = start.clone();
             (0..knobs.len()).filter(coefficient).for_each(|j| only[j] = 0.0);
             only[i] = 1.0;
@@ -134,7 +150,7 @@ fn regressed(parts: &[Part], start: &[Vec<f64>], z: &[f64], w: &[f64]) -> Option
     let a = DMatrix::from_columns(&columns);
     let scale: Vec<f64> = a.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
     let scaled = DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)] / scale[j]);
-    let found = scaled.svd(true, true).solve(&DVector::from_column_slice(w), 1e-10).ok()?;
+    let found = scaled.svd(true, true).solve(&right, 1e-10).ok()?;
     for ((&(part, knob), value), scale) in places.iter().zip(found.iter()).zip(&scale) {
         knobs[part][knob] = value / scale;
     }
@@ -149,10 +165,13 @@ fn fitted(
     z: &[f64],
     w: &[f64],
 ) -> Option<(Vec<Vec<f64>>, f64)> {
-    let start = regressed(parts, start, z, w)?;
-    let places: Vec<(usize, usize)> = (parts.iter().enumerate())
-        .flat_map(|(number, part)| open(part.law.as_ref()).map(move |knob| (number, knob)))
+    let start = regressed(parts, start, ranges, (z, w))?;
+    let places: Vec<(usize, usize)> = (parts.iter().zip(ranges).enumerate())
+        .flat_map(|(number, (part, range))| free(part, range).map(move |knob| (number, knob)))
         .collect();
+    if places.is_empty() {
+        return None;
+    }
     let of = |from: &dyn Fn(usize, usize) -> f64| {
         places.iter().map(|&(part, knob)| from(part, knob)).collect::<Vec<f64>>()
     };
@@ -208,7 +227,7 @@ pub(super) fn two(first: &Fitted, second: &Fitted, z: &[f64], w: &[f64]) -> Opti
 }
 
 /// Squares that are left by straight lines between knots that lie as densely as the data.
-pub(super) fn free(curve: &[Drawn], knots: usize, z: &[f64], w: &[f64]) -> Option<f64> {
+pub(super) fn drawn(curve: &[Drawn], knots: usize, z: &[f64], w: &[f64]) -> Option<f64> {
     let last = curve.len().checked_sub(1)?;
     let mut at: Vec<f64> = (0..knots).map(|i| curve[i * last / (knots - 1)].z).collect();
     at.dedup_by(|a, b| *a <= *b);

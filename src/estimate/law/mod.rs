@@ -150,7 +150,7 @@ pub fn read(pairs: &Pairs<'_>, library: &[(String, Box<dyn CandidateEffect>)]) -
         let (knobs, squares) = (one.knobs(), one.squares);
         (one.parts, knobs, squares)
     }));
-    if let Some(squares) = fit::free(&curve, KNOTS, &z, &w) {
+    if let Some(squares) = fit::drawn(&curve, KNOTS, &z, &w) {
         tried.push((vec![], KNOTS, squares));
     }
     let total: f64 = w.iter().map(|w| w * w).sum();

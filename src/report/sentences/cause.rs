@@ -86,6 +86,8 @@ fn other_laws(cause: &Cause) -> String {
             of: cause.of.clone(),
             parameters: part.parameters.clone(),
             wording: part.wording.clone(),
+            probability: cause.probability,
+            parts: cause.parts.clone(),
             ..Cause::default()
         };
         format!(", together with {}{}", lower(&part.wording.title), size(&own))

@@ -17,6 +17,8 @@ const FACTORS: [(&str, f64); 6] = [
 ];
 /// Relative difference at which a factor is one of these.
 const NEAR_FACTOR: f64 = 0.01;
+/// Probability from which on it is sure that something is there.
+const SURE: f64 = 0.95;
 
 /// a sin(n z) + b cos(n z) by amplitude, order and phase.
 pub(super) fn wave(cause: &Cause, order: &str, sine: &str, cosine: &str) -> String {
@@ -67,7 +69,8 @@ pub(super) fn factor(cause: &Cause, name: &str) -> String {
     format!(", factor {text}: {what}")
 }
 
-/// A size whose interval holds 0.
+/// A size whose interval holds 0: by itself, or because other numbers of the same place change what it
+/// changes, while something there is sure.
 pub(super) fn unresolved(cause: &Cause) -> String {
     let stated = match cause.wording.size {
         Size::Wave { sine, cosine, .. } => {
@@ -78,6 +81,10 @@ pub(super) fn unresolved(cause: &Cause) -> String {
         _ => headline_value(cause).map(|v| interval(v.value, v.std_error, &v.unit)),
     };
     let stated = stated.unwrap_or_default();
+    let numbers = cause.parameters.iter().filter(|v| v.std_error.is_some()).count();
+    if (numbers > 1 || cause.parts.len() > 1) && cause.probability.is_some_and(|p| p > SURE) {
+        return format!(", which its other numbers can make up for ({stated})");
+    }
     format!(", of a size that this record does not tell from none ({stated})")
 }
 

@@ -160,6 +160,11 @@ fn parameters_with_their_change_and_sizes_that_are_none() {
         text.contains("of a size that this record does not tell from none (180 +- 200 N/m)"),
         "{text}"
     );
+    let mut traded = none.clone();
+    traded.parameters.push(value("start", 0.3, 0.1, "m"));
+    traded.probability = Some(0.99);
+    let text = super::cause(&traded);
+    assert!(text.contains("which its other numbers can make up for (180 +- 200 N/m)"), "{text}");
     let mut friction = law(
         "Dry friction",
         "force",
