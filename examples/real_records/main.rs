@@ -58,11 +58,10 @@ impl Case {
         for (name, source) in &self.tests {
             tests.push((*name, source.read(folder)?));
         }
-        let finding = Diagnosis::of(&model).init(Init::Samples(self.init)).run(
-            &[train],
-            Some(&tests[0].1),
-            &(),
-        )?;
+        // a record that has no other is split by the diagnosis itself
+        let test = tests.first().map(|(_, record)| record).filter(|_| !self.alone);
+        let diagnosis = Diagnosis::of(&model).init(Init::Samples(self.init));
+        let finding = diagnosis.run(&[train], test, &())?;
         let (mut before, mut after) = (vec![], vec![]);
         for (name, test) in &tests {
             before.push(format!("{name} {:.3e}", self.rmse(&model, test)?));

@@ -85,7 +85,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
         .without(&args.without)
         .fix(&args.fix)
         .max_causes(args.max_causes)
-        .noise_inside(args.noise_inside)
+        .sensor_noise_only(args.sensor_noise_only)
         .init(input::init(args.init));
     let title = match &args.model {
         Some(path) => path.display().to_string(),

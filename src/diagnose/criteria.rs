@@ -31,4 +31,4 @@ pub(crate) const PREDICTED: f64 = 6.0;
 pub(crate) const NEIGHBOUR: f64 = 15.0;
 pub(crate) const NEAR_NEIGHBOUR: f64 = 80.0;
 /// How far below the best a fit may be after two iterations to go on.
-pub(crate) const RACE: f64 = 120.0;
+pub(crate) const RACE: f64 = 40.0;

@@ -84,13 +84,13 @@ impl<'a> Diagnosis<'a> {
         self
     }
 
-    /// Allows for noise inside the plant (process noise, noisy inputs, wandering sensors) where a
-    /// free run leaves coloured noise: noise models compete, and where noise inside is clearly more
-    /// probable, causes are searched by the innovations of an extended Kalman filter (Kristensen,
-    /// Madsen and Jorgensen, Automatica 40, 2004). Takes several times as long.
+    /// Supposes that all noise sits at the sensors. Without this, noise models compete where a free
+    /// run leaves coloured noise: where noise inside the plant (process noise, noisy inputs, wandering
+    /// sensors) is clearly more probable, causes are searched by the innovations of an extended Kalman
+    /// filter (Kristensen, Madsen and Jorgensen, Automatica 40, 2004), which takes longer.
     #[must_use]
-    pub fn noise_inside(mut self, yes: bool) -> Self {
-        self.allowed.noise_inside = yes;
+    pub fn sensor_noise_only(mut self, yes: bool) -> Self {
+        self.allowed.sensor_noise = yes;
         self
     }
 }

@@ -193,11 +193,13 @@ impl Predictor {
         found
     }
 
-    /// Forces of which none pushes as an earlier one does, and none does nothing.
+    /// Forces of which none pushes as an earlier one does, and none does nothing or enters what is a
+    /// definition.
     pub(crate) fn distinct(&self, path: &Path) -> Vec<usize> {
         let (n, nf) = (path.n, path.forces);
         let mut kept: Vec<usize> = vec![];
-        for c in 0..nf {
+        let plan = &self.model.plan;
+        for c in (0..nf).filter(|&c| c >= plan.sizes.w || plan.may_push(c)) {
             let dot = |a: usize, b: usize| {
                 path.g.chunks_exact(n * nf).fold(0.0, |sum, g| {
                     sum + (0..n).map(|i| g[i * nf + a] * g[i * nf + b]).sum::<f64>()

@@ -186,7 +186,7 @@ impl Case {
 
     fn finding(&self, size: f64, n: usize, seed: u64) -> Finding {
         let record = self.record(size, &self.noise, n, seed);
-        Diagnosis::of(&system(self.plant)).noise_inside(true).run(&[record], None, &()).unwrap()
+        Diagnosis::of(&system(self.plant)).run(&[record], None, &()).unwrap()
     }
 
     /// Whether the first cause is the effect at its place, and all that was said.

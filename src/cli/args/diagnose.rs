@@ -34,10 +34,10 @@ pub struct Diagnose {
     /// Parameters that are right
     #[arg(long, value_name = "PARAMETER", value_delimiter = ',', num_args = 1..)]
     pub fix: Vec<String>,
-    /// Allow for noise inside the machine (process noise, noisy inputs, wandering sensors) where a
-    /// free run leaves coloured noise; takes several times as long
+    /// Suppose that all noise sits at the sensors; without this, noise inside the machine (process
+    /// noise, noisy inputs, wandering sensors) is weighed where a free run leaves coloured noise
     #[arg(long)]
-    pub noise_inside: bool,
+    pub sensor_noise_only: bool,
     /// Causes at most
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = positive)]
     pub max_causes: usize,

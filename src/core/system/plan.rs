@@ -109,6 +109,14 @@ impl Base {
     }
 }
 
+impl Base {
+    /// Whether something unmodelled may push at an own channel: everywhere but at the channel of a
+    /// derivative that only says what another state is.
+    pub fn may_push(&self, channel: usize) -> bool {
+        self.declared_channels || !self.rates.is_definition(channel)
+    }
+}
+
 /// A system compiled for one sampling time.
 #[derive(Debug, Clone)]
 pub struct Plan {

@@ -18,7 +18,12 @@ pub struct Rates {
     seen: Vec<(Vec<f64>, Vec<f64>)>,
     /// What each entry is.
     origins: Vec<Origin>,
+    /// States whose derivative is another state whatever the parameters are.
+    defined: Vec<bool>,
 }
+
+/// How much larger the parameters of a second look are.
+const OTHER: f64 = 1.37;
 
 /// Random points around the model's initial state, all positive so that roots exist.
 pub fn points(law: &dyn Law, count: usize) -> Vec<Point> {
@@ -53,10 +58,18 @@ impl Rates {
         let sources = Sources::of(&signals);
         let continuous = signals.time.is_continuous();
         let mut seen = vec![];
+        let mut defined = vec![continuous; sizes.x];
         for point in points(law, POINTS) {
             let z = value(law, sizes, Ask::Coordinates, &point);
             let y = value(law, sizes, Ask::Output, &point);
             let dx = value(law, sizes, Ask::Derivative, &point);
+            let mut other = point.clone();
+            other.theta.iter_mut().for_each(|value| *value *= OTHER);
+            let again = value(law, sizes, Ask::Derivative, &other);
+            for (i, defined) in defined.iter_mut().enumerate() {
+                let is = |j: usize| i != j && dx[i] == point.x[j] && again[i] == point.x[j];
+                *defined &= (0..sizes.x).any(is);
+            }
             let dz = slope(law, sizes, Ask::Coordinates, &point, Along::State(&dx));
             let dy = slope(law, sizes, Ask::Output, &point, Along::State(&dx));
             let pick = |states: &[f64], own: &[f64], outputs: &[f64], inputs: &[f64], time: f64| {
@@ -81,7 +94,13 @@ impl Rates {
             }
         }
         let origins = sources.entries.iter().map(|(_, origin)| *origin).collect();
-        Self { seen, origins }
+        Self { seen, origins, defined }
+    }
+
+    /// Whether the equation of a state only says what another state is (q' = v): nothing can be
+    /// missing there, and nothing can push.
+    pub fn is_definition(&self, state: usize) -> bool {
+        self.defined.get(state).copied().unwrap_or(false)
     }
 
     /// The entry, and the factor on it, that equals the rate of change of `entry`.

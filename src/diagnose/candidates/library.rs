@@ -20,8 +20,8 @@ pub(crate) struct Allowed {
     pub without: Vec<String>,
     /// Parameters that are held.
     pub fixed: Vec<String>,
-    /// Whether noise may be inside the plant.
-    pub noise_inside: bool,
+    /// Whether all noise is supposed to sit at the sensors.
+    pub sensor_noise: bool,
 }
 
 impl Allowed {
@@ -88,7 +88,10 @@ impl Builder<'_, '_> {
     pub(crate) fn channels(&self) -> Vec<Vec<(usize, f64)>> {
         let mut groups: Vec<Vec<(usize, f64)>> = vec![];
         let mut order: Vec<usize> = (0..self.problem.base.targets.entries.len())
-            .filter(|&e| !matches!(self.problem.base.targets.entries[e].1, Origin::Output(_)))
+            .filter(|&e| match self.problem.base.targets.entries[e].1 {
+                Origin::Own(channel) => self.problem.base.may_push(channel),
+                origin => !matches!(origin, Origin::Output(_)),
+            })
             .collect();
         order.sort_by_key(|&e| self.preference(e));
         for entry in order {

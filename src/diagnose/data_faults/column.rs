@@ -118,7 +118,7 @@ pub(crate) fn flipped(system: &System, records: &[Record]) -> Result<Option<Faul
     };
     let same = |t: &&(f64, String, Vec<Record>)| t.0 < (1.0 + SAME) * best;
     Ok(Some(Fault {
-        removed: share(before, *best, noise(system, turned)?),
+        removed: share(before.min(WORSE_THAN_MEAN), *best, noise(system, turned)?),
         or_in: tried[1..].iter().filter(same).map(|t| t.1.clone()).collect(),
         ..of_column(FaultKind::SwappedSign, name)
     }))
@@ -142,6 +142,8 @@ pub(crate) fn retimed(system: &System, records: &[Record]) -> Result<Option<Faul
         }
     }
     let Some((after, best)) = best else { return Ok(None) };
+    // a simulation that is worse than the mean has no more to lose than the mean has
+    let before = before.min(WORSE_THAN_MEAN);
     let removed = share(before, after, noise(system, &mended(&best, &part))?);
     Ok((removed >= EXPLAINS).then_some(Fault { removed, ..best }))
 }

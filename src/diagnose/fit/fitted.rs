@@ -28,7 +28,7 @@ impl Refit {
 
     /// What has to be simulated for that.
     pub fn span(self) -> Span {
-        if self.whole { Span::Whole } else { Span::Fit }
+        self.part().span()
     }
 }
 

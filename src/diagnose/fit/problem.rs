@@ -43,6 +43,16 @@ pub(crate) enum Part {
     All,
 }
 
+impl Part {
+    /// What has to be simulated for that.
+    pub fn span(self) -> Span {
+        match self {
+            Self::Choose | Self::All => Span::Whole,
+            Self::Fit => Span::Fit,
+        }
+    }
+}
+
 /// Samples at the start of a segment that do not count.
 const SKIP: usize = 20;
 

@@ -38,7 +38,7 @@ pub(crate) fn refit(
     for _ in 0..AGAIN {
         let present = |m: &usize| Some((*m, fitted[*m].as_ref()?));
         let (of, present): (Vec<usize>, Vec<&Fitted>) = open.iter().filter_map(present).unzip();
-        let moved = restarted(problem, nuisance, &present, how);
+        let moved = restarted(problem, nuisance, &present, (how.grain, how.part()));
         let moved = of.into_iter().zip(moved).filter_map(|(m, moved)| Some((m, moved?)));
         let (of, moved): (Vec<usize>, Vec<Model>) = moved.unzip();
         open.clear();

@@ -1,9 +1,9 @@
-//! Starts of many stretches, each tried anew by itself. Where errors grow, the cost of a stretch
+//! Starts of stretches, each tried anew by itself. Where errors grow, the cost of a stretch
 //! has many minima, and one stretch that is caught in a wrong one spoils the fit of all.
 
-use crate::fit::fitted::{Fitted, Refit};
+use crate::fit::fitted::Fitted;
 use crate::fit::nuisance::{Key, Nuisance, get, set};
-use crate::fit::problem::{Job, Model, Problem};
+use crate::fit::problem::{Grain, Job, Model, Part, Problem};
 
 /// Changes of a state that are tried, in units of its spread.
 const TRIED: [f64; 10] = [-0.3, -0.1, -0.03, -0.01, -0.003, 0.003, 0.01, 0.03, 0.1, 0.3];
@@ -17,9 +17,9 @@ pub(crate) fn restarted(
     problem: &Problem<'_>,
     nuisance: &Nuisance,
     fits: &[&Fitted],
-    how: Refit,
+    (grain, part): (Grain, Part),
 ) -> Vec<Option<Model>> {
-    let of: Vec<usize> = problem.segments_of(how.part()).collect();
+    let of: Vec<usize> = problem.segments_of(part).collect();
     // sums of squares over every stretch
     let squares = |residuals: &[f64]| {
         let mut sums = vec![0.0; nuisance.segments];
@@ -44,11 +44,11 @@ pub(crate) fn restarted(
         // a run moves the state in all stretches at once: each takes what is best for it
         let tried: Vec<Model> =
             best.iter().flat_map(|model| TRIED.map(|by| moved(model, by))).collect();
-        let jobs: Vec<Option<Job>> = tried.iter().map(|m| problem.job(m, how.grain)).collect();
-        let answers = problem.run_built(&jobs, how.span());
+        let jobs: Vec<Option<Job>> = tried.iter().map(|m| problem.job(m, grain)).collect();
+        let answers = problem.run_built(&jobs, part.span());
         for (i, (tried, y)) in tried.iter().zip(answers).enumerate() {
             let (Some(y), m) = (y, i / TRIED.len()) else { continue };
-            let sums = squares(&problem.residual(&y, how.part()));
+            let sums = squares(&problem.residual(&y, part));
             for (s, (sum, least)) in sums.into_iter().zip(&mut least[m]).enumerate() {
                 if sum < LESS * *least {
                     (*least, better[m]) = (sum, true);

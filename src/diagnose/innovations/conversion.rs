@@ -83,7 +83,7 @@ pub(super) fn finished(
         moved: vec![],
         moved_along_ridge: false,
         y,
-        // what innovations leave to no place is noise, also where a loop feeds it back
+        // by the innovations, which are not at hand here
         dependence: 0.0,
         inside: Some(disturbances(of, &found.noise)),
     })

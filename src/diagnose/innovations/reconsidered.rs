@@ -1,6 +1,6 @@
 //! An answer of free runs, reconsidered where the records call for noise inside the plant.
 
-use crate::likelihood::Predictor;
+use crate::likelihood::{Explanation, Predictor};
 
 use super::compete::{Rivals, extended, left, predictor, step};
 use super::conversion::{carried_over, finished};
@@ -9,6 +9,7 @@ use crate::error::DiagnoseError;
 use crate::fit::finished::Finished;
 use crate::fit::problem::Part;
 use crate::fit::refit::MANY;
+use crate::prepare::input_dependence::{DEPENDS, dependence};
 use crate::prepare::prepared::Prepared;
 use crate::statistics::whiteness;
 use crate::watch::Watch;
@@ -57,8 +58,7 @@ fn reconsidered(
     watch: &dyn Watch,
 ) -> Answer {
     let many = prepared.problem.drive.segments.len() >= MANY;
-    if !allowed.noise_inside || most == 0 || many || watch.stopped() || is_white(prepared, &answer)
-    {
+    if allowed.sensor_noise || most == 0 || many || watch.stopped() || is_white(prepared, &answer) {
         return (answer, None);
     }
     watch.tell(0.9, "asking for noise inside the plant");
@@ -101,11 +101,34 @@ fn by_innovations(
     if !none && found.criterion() <= of_answer {
         return None;
     }
-    let told = finished(prepared, allowed, (&base, &found))?;
+    let mut told = finished(prepared, allowed, (&base, &found))?;
+    told.dependence = depends(prepared, (&base, &found), &told)?;
+    if none && told.dependence > DEPENDS {
+        return None;
+    }
     // a likelihood is exact, a model is not: what it predicts must not get worse
     let before = left(problem, &prepared.start)?;
     let after = left(problem, &told.fitted.model)?;
     (after <= WORSE * before).then_some(told)
+}
+
+/// Score that the innovations of an explanation follow from inputs before them, which those of the true
+/// model never do, in a closed loop neither (Ljung, "System Identification", 2nd ed., section 16.6).
+fn depends(
+    prepared: &Prepared<'_>,
+    (base, found): (&Predictor, &Explanation),
+    told: &Finished,
+) -> Option<f64> {
+    let problem = &prepared.problem;
+    let system = prepared.context().extend(&told.fitted.model).ok()?;
+    let with = extended(base, &system, step(problem))?.starting(found.starts.clone());
+    let innovations = with.innovations(&found.noise, true).ok()?.values;
+    // what was not foreseen of the next sample, against all up to this one
+    let foreseen = problem.y.iter().zip(&innovations).map(|(y, e)| {
+        let next = e.iter().skip(1).chain(std::iter::once(&f64::NAN));
+        y.iter().zip(next).map(|(y, e)| if e.is_finite() { y - e } else { *y }).collect()
+    });
+    Some(dependence(problem, &prepared.nominal, &foreseen.collect::<Vec<Vec<f64>>>()))
 }
 
 /// Parameters moved; along a ridge it is one, whichever.

@@ -16,6 +16,9 @@ const RUN: usize = 4;
 /// How much more often a limit is read than the value next to it: what tells a limit from a
 /// coarse scale.
 const TIMES: usize = 5;
+/// How much longer than at other turning points a reading stands at a limit: a machine that friction
+/// holds where it turns stands at every turning point.
+const LONGER: usize = 2;
 
 /// The lowest and the highest value that a series cannot leave; infinite where there is none.
 fn limits(y: &[f64], known: &[bool]) -> (f64, f64) {
@@ -39,8 +42,30 @@ fn upper(values: &[f64]) -> Option<f64> {
     let rests = 2 * often > values.len();
     // on a fine scale, no value but a limit is met time and again
     let fine = count(next) == 1;
-    (often >= COUNT && (fine || longest >= RUN) && often >= TIMES * count(next) && !rests)
+    let turning = stood(values, largest);
+    (often >= COUNT
+        && (fine || longest >= RUN)
+        && often >= TIMES * count(next)
+        && longest > LONGER * turning
+        && !rests)
         .then_some(largest)
+}
+
+/// How many equal readings in a row a series has at most where it turns, at values other than one.
+fn stood(values: &[f64], but: f64) -> usize {
+    let (mut longest, mut from) = (0, 0);
+    for k in 1..values.len() {
+        if values[k] == values[k - 1] {
+            continue;
+        }
+        let value = values[from];
+        let turns = from > 0 && (values[from - 1] < value) == (values[k] < value);
+        if turns && value != but {
+            longest = longest.max(k - from);
+        }
+        from = k;
+    }
+    longest
 }
 
 /// Makes readings that stand at a limit of the instrument missing values, and says which.

@@ -235,23 +235,25 @@ fn attempt(
     race(study, best.free, &wishes, best.posterior());
 }
 
-/// Fits these, and lets go after two iterations of those that are hopelessly below `top` or the best.
-pub(super) fn race(study: &mut Study<'_, '_>, free: bool, wishes: &[Wish], top: f64) {
+/// Fits these, and lets go after two iterations of those that are hopelessly below `top` or the best;
+/// what went on, best first.
+pub(super) fn race(study: &mut Study<'_, '_>, free: bool, wishes: &[Wish], top: f64) -> Vec<Fit> {
     let mut fits = study.fit(free, wishes, ITERATIONS.0);
     fits.sort_by(|a, b| b.posterior().total_cmp(&a.posterior()));
     let top = fits.first().map_or(f64::NEG_INFINITY, Fit::posterior).max(top);
     let goes_on = |(i, fit): &(usize, &Fit)| *i < RACERS || fit.posterior() > top - RACE;
-    let again: Vec<Wish> = fits
-        .iter()
-        .enumerate()
-        .filter(goes_on)
-        .map(|(_, fit)| Wish { model: fit.model.clone(), noise: fit.noise.clone() })
-        .collect();
+    let again: Vec<Wish> =
+        fits.iter().enumerate().filter(goes_on).map(|(_, fit)| Wish::from(fit)).collect();
     for fit in fits {
         study.beam.keep(fit);
     }
     if study.watch.stopped() {
-        return;
+        return vec![];
     }
-    study.fit_and_keep(free, &again, ITERATIONS.1);
+    let mut fits = study.fit(free, &again, ITERATIONS.1);
+    fits.sort_by(|a, b| b.posterior().total_cmp(&a.posterior()));
+    for fit in &fits {
+        study.beam.keep(fit.clone());
+    }
+    fits
 }

@@ -18,6 +18,13 @@ pub(super) struct Wish {
     pub noise: Arc<dyn Whitener>,
 }
 
+impl From<&Fit> for Wish {
+    /// A fit that goes on.
+    fn from(fit: &Fit) -> Self {
+        Self { model: fit.model.clone(), noise: fit.noise.clone() }
+    }
+}
+
 /// What fits are made and judged with.
 pub(super) struct Judge<'a, 'b> {
     pub problem: &'a Problem<'b>,

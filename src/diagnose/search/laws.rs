@@ -26,6 +26,8 @@ use crate::prepare::input_dependence::DEPENDS;
 const ITERATIONS: usize = 12;
 /// Samples of a coordinate that a law is regressed on.
 const SAMPLES: usize = 400;
+/// Laws of a place that are fitted to their end.
+const LEADING: usize = 2;
 /// Hills of one law that are fitted exactly.
 const HILLS: usize = 2;
 
@@ -105,7 +107,13 @@ fn fit_laws(
             wishes.push(Wish { model: rest.model.with(cause, knobs), noise: rest.noise.clone() });
         }
     }
-    race(study, rest.free, &wishes, top);
+    // a curve is fitted to its end: so are the laws that are compared with it, also from other initial
+    // states, for those that suit a wrong law may lie in another valley
+    let mut leading = race(study, rest.free, &wishes, top);
+    leading.truncate(LEADING);
+    let mut wishes = study.restarted(rest.free, &leading);
+    wishes.extend(leading.iter().map(Wish::from));
+    study.fit_and_keep(rest.free, &wishes, ITERATIONS);
 }
 
 /// The best curve in the place of some laws.

@@ -198,11 +198,13 @@ impl Solved<'_> {
             })
             .collect();
         let all = DMatrix::from_vec(self.rows, columns.len(), own.concat());
+        // as a product of matrices it goes by blocks of the cache; `tr_mul` takes dot after dot
+        let rows = all.transpose();
         let blocks: Vec<DMatrix<f32>> = (0..columns.len().div_ceil(BLOCK))
             .into_par_iter()
             .map(|b| {
                 let from = b * BLOCK;
-                all.tr_mul(&all.columns(from, BLOCK.min(columns.len() - from)))
+                &rows * all.columns(from, BLOCK.min(columns.len() - from))
             })
             .collect();
         DMatrix::from_fn(columns.len(), columns.len(), |i, j| {

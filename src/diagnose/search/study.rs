@@ -12,6 +12,8 @@ use crate::candidates::library::{Allowed, library};
 use crate::evidence::{Choices, NoiseModel, Stretches};
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Model, Part, Problem, Span};
+use crate::fit::refit::Fitted;
+use crate::fit::segment_restart::restarted;
 use crate::prepare::input_dependence::dependence;
 use crate::prepare::operating_range::Nominal;
 use crate::statistics::strongest;
@@ -100,6 +102,23 @@ impl<'a, 'b> Study<'a, 'b> {
         }
     }
 
+    /// Fits from better initial states, of those that have any: all else as it is.
+    pub fn restarted(&self, free: bool, fits: &[Fit]) -> Vec<Wish> {
+        let fitted = |fit: &Fit| Fitted {
+            model: fit.model.clone(),
+            keys: vec![],
+            columns: vec![],
+            residuals: fit.residual.clone(),
+        };
+        let all: Vec<Fitted> = fits.iter().map(fitted).collect();
+        let all: Vec<&Fitted> = all.iter().collect();
+        let models = restarted(self.problem, self.nuisance(free), &all, (Grain::Coarse, Part::Fit));
+        let wish = |(fit, model): (&Fit, Option<Model>)| {
+            Some(Wish { model: model?, noise: fit.noise.clone() })
+        };
+        fits.iter().zip(models).filter_map(wish).collect()
+    }
+
     /// Score that what a model leaves depends on the inputs.
     pub fn dependence(&self, model: &Model) -> f64 {
         let y = self.problem.simulate(model, Grain::Coarse);
@@ -111,8 +130,7 @@ impl<'a, 'b> Study<'a, 'b> {
         for free in [false, true] {
             let close = self.beam.within(within).filter(|fit| fit.free == free);
             let coloured = close.filter(|fit| fit.noise.is_coloured());
-            let wish = |fit: &Fit| Wish { model: fit.model.clone(), noise: fit.noise.clone() };
-            let wishes: Vec<Wish> = coloured.map(wish).collect();
+            let wishes: Vec<Wish> = coloured.map(Wish::from).collect();
             self.fit_and_keep(free, &wishes, 4);
         }
     }
@@ -165,8 +183,7 @@ impl<'a, 'b> Study<'a, 'b> {
         }
         for free in [false, true] {
             let close = self.beam.within(within).filter(|fit| fit.free == free);
-            let wish = |fit: &Fit| Wish { model: fit.model.clone(), noise: fit.noise.clone() };
-            let wishes: Vec<Wish> = close.map(wish).collect();
+            let wishes: Vec<Wish> = close.map(Wish::from).collect();
             self.fit_and_keep(free, &wishes, iterations);
         }
     }
