@@ -1,7 +1,7 @@
 //! What a record can see and tell apart, said before anything is looked for.
 
 use lacuna::data::{Random, Record};
-use lacuna::diagnose::{LookAlikes, Outlook, Planner, Track, Visibility};
+use lacuna::diagnose::{LookAlikes, Outlook, Planner, Supposed, Track, Visibility};
 use lacuna::evaluate::{Init, Simulation};
 use lacuna::file::{Format, parse};
 use lacuna::report::sentences;
@@ -70,6 +70,22 @@ fn what_looks_alike_is_said_with_the_experiment_that_tells() {
     // alike to first order, so no experiment of this kind tells; that is said as well
     let late = pair(&outlook, "lag into u of u", "delay into u of u").expect("late inputs");
     assert!(late.rho > 0.99, "{late:?}");
+    // an offset of the input is an offset of the force that it is
+    let twins = pair(&outlook, "bias into u", "bias into force_1").expect("one force");
+    assert!(twins.twins && twins.told_apart_by.is_empty(), "{twins:?}");
+    let said = sentences::pair(twins);
+    assert!(said.contains("no experiment with these inputs tells them apart"), "{said}");
+    // what another input tells apart is no twin
+    let told = |p: &&LookAlikes| p.told_apart_by.iter().any(|by| !by.starts_with("sensor"));
+    let told: Vec<_> = outlook.look_alikes.iter().filter(told).collect();
+    assert!(!told.is_empty() && told.iter().all(|pair| !pair.twins), "{told:?}");
+    // a place that is the same in the equations
+    let same = outlook.causes.iter().find(|c| !c.same_as.is_empty()).expect("a force that u is");
+    let twin = Supposed { into: same.same_as[0].clone(), ..same.cause.clone() };
+    assert!(outlook.is_same([&same.cause, &twin]) && outlook.is_same([&twin, &same.cause]));
+    let other = Supposed { into: "y".into(), ..same.cause.clone() };
+    assert!(!outlook.is_same([&same.cause, &other]));
+    assert!(sentences::outlook(&outlook).contains("The same in the model's equations"));
     // a force on the second mass is another matter
     assert!(pair(&outlook, "bias into y", "cubic into joint_2 of stretch_2").is_none());
     let best = &outlook.experiments[0];

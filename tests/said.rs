@@ -5,7 +5,7 @@ use lacuna::data::{FilteredNoise, Record, noise};
 use lacuna::diagnose::{Diagnosis, Finding};
 use lacuna::evaluate::{Init, Simulation};
 use lacuna::file::{Format, parse};
-use lacuna::report::{Beside, Document, Provenance, Report, sentences};
+use lacuna::report::{Document, FileNames, Provenance, Report, sentences};
 use lacuna::system::System;
 
 mod closed_loop;
@@ -64,9 +64,9 @@ fn diagnosed(records: &[Record], only: &[&str]) -> Finding {
 
 /// The finding as its document.
 fn document(finding: &Finding) -> serde_json::Value {
-    let beside = Beside { extended_model: "extended.toml", report: "report.html" };
+    let files = FileNames { extended_model: "extended.toml", report: "report.html" };
     let from = Provenance::default();
-    serde_json::from_str(&Document::of(finding, beside, &from).text().unwrap()).unwrap()
+    serde_json::from_str(&Document::of(finding, files, &from).text().unwrap()).unwrap()
 }
 
 /// Whether a remark of the finding has these words.

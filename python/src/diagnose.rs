@@ -6,7 +6,7 @@ use lacuna::data::Record;
 use lacuna::diagnose::{Diagnosis, Finding, Planner};
 use lacuna::estimate::linear_baseline;
 use lacuna::file::to_toml_with;
-use lacuna::report::{Beside, Document, Report, sentences};
+use lacuna::report::{Document, FileNames, Report, sentences};
 use lacuna::system::System;
 use lacuna::watch::Watch;
 use pyo3::prelude::*;
@@ -94,8 +94,8 @@ fn answer(
         report = report.outlook(outlook);
     }
     let page = report.page();
-    let beside = Beside { extended_model: MODEL, report: PAGE };
-    let document = Document::of(&finding, beside, &from).text()?;
+    let files = FileNames { extended_model: MODEL, report: PAGE };
+    let document = Document::of(&finding, files, &from).text()?;
     let mut texts = BTreeMap::from([
         ("headline".into(), sentences::headline(&finding)),
         ("details".into(), sentences::details(&finding).join("\n")),

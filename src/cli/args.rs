@@ -5,6 +5,7 @@ mod diagnose;
 mod estimate;
 mod exam;
 mod export;
+pub mod help;
 mod look;
 mod man;
 mod new;
@@ -130,13 +131,13 @@ pub enum Command {
     Look(Look),
     /// Says what a record can see and tell apart, and the experiment that would tell more
     #[command(after_help = "Example:\n  lacuna plan --model press.toml --data est.csv\n\n\
-        Every cause of the library is simulated along the record, a little of it, and measured by the\n\
-        noise. -v lists every cause and every pair. Writes no file. --json prints\n  \
+        A little of every cause is simulated along the record and measured by the noise. Writes no\n\
+        file. -v lists every cause and every pair. --json prints\n  \
         noise_floor    noise of each output and where it is from\n  \
         causes         smallest_visible (parameters trusted), smallest_visible_free, unit, and kappa,\n                 \
         the share of the effect that free parameters cannot imitate\n  \
         look_alikes    pairs with a correlation rho above 0.95, or a separation below 10 when each\n                 \
-        moves the outputs as much as the noise does; told_apart_by which experiments\n  \
+        moves the outputs as much as the noise does; told_apart_by, twins: by none\n  \
         experiments    level, offset, band, another sensor: pairs that each tells apart, and causes\n                 \
         that it shows and the record does not")]
     Plan(Plan),

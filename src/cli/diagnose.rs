@@ -13,7 +13,7 @@ use lacuna::data::Record;
 use lacuna::diagnose::{Diagnosis, Finding, Planner, Watch};
 use lacuna::estimate::linear_baseline;
 use lacuna::file::{save_with, write_text};
-use lacuna::report::{Beside, Document, Provenance, Report, sentences};
+use lacuna::report::{Document, FileNames, Provenance, Report, sentences};
 use lacuna::study::{Rehearsal, Rehearsed};
 use lacuna::system::System;
 
@@ -160,8 +160,8 @@ fn finish(
         report = report.outlook(outlook);
     }
     let mut page = report.page();
-    let beside = Beside { extended_model: MODEL, report: PAGE };
-    let mut document = Document::of(&finding, beside, &from);
+    let files = FileNames { extended_model: MODEL, report: PAGE };
+    let mut document = Document::of(&finding, files, &from);
     if let Some(rehearsed) = &rehearsed {
         rehearsed.section(&mut page);
         document = document.with("rehearsal", rehearsed).map_err(Failure::unwritable)?;

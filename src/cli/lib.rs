@@ -34,7 +34,7 @@ mod study;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::FromArgMatches;
 
 use args::{Args, Command};
 use console::Console;
@@ -43,7 +43,8 @@ use lacuna::fault::Place;
 
 /// Runs the program with the process's arguments.
 pub fn main() -> ExitCode {
-    let args = match Args::try_parse() {
+    let typed = args::help::command().try_get_matches().and_then(|m| Args::from_arg_matches(&m));
+    let args = match typed {
         Ok(args) => args,
         Err(error) => return failure::call(&error),
     };

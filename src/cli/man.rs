@@ -1,9 +1,8 @@
 //! `lacuna man`: the manual pages.
 
-use clap::CommandFactory;
 use serde_json::json;
 
-use super::args::{Args, Man};
+use super::args::{Man, help::command};
 use super::console::{Console, print};
 use super::failure::Failure;
 use super::outputs::cannot_write;
@@ -11,7 +10,7 @@ use super::reference;
 use lacuna::file::write_text;
 
 pub fn run(args: &Man, look: &Console) -> Result<u8, Failure> {
-    let command = Args::command();
+    let command = command();
     if let Some(folder) = &args.out {
         std::fs::create_dir_all(folder).map_err(|error| cannot_write(folder, &error))?;
         if args.markdown {

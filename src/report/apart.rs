@@ -18,12 +18,22 @@ fn experiments(outlook: &Outlook, pair: [&Supposed; 2]) -> String {
         .iter()
         .find(|alike| pair.iter().all(|cause| alike.causes.contains(cause)));
     let Some(alike) = of_pair else {
+        if outlook.is_same(pair) {
+            return "no experiment with these inputs: the two are one and the same in the model's equations, \
+                    and the predicted difference is zero"
+                .into();
+        }
         return "not alike where each moves the outputs as much as the noise: more of the same data".into();
     };
     let described = outlook.experiments.iter().filter(|e| alike.told_apart_by.contains(&e.name));
     let described: Vec<String> =
         described.take(3).map(|e| format!("{} ({})", e.name, e.description)).collect();
     match described.is_empty() {
+        true if alike.twins => {
+            "no experiment with these inputs: small effects of the two differ by \
+                                nothing, in this record and in those that were simulated"
+                .into()
+        }
         true => "none of those that were simulated".into(),
         false => described.join("; or "),
     }
@@ -64,4 +74,56 @@ pub(super) fn section(page: &mut Page, finding: &Finding, outlook: Option<&Outlo
         }
     };
     page.element("p", "note", note);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::{LookAlikes, Track, Visibility};
+
+    fn visible(cause: Supposed, same_as: &[&str]) -> Visibility {
+        let same_as = same_as.iter().map(ToString::to_string).collect();
+        let (smallest_visible, smallest_visible_free) = (Some(1.0), None);
+        let (shape, unit, kappa) = (std::collections::BTreeMap::new(), "N".into(), None);
+        Visibility {
+            cause,
+            same_as,
+            shape,
+            visible: true,
+            smallest_visible,
+            smallest_visible_free,
+            unit,
+            kappa,
+        }
+    }
+
+    #[test]
+    fn twins_are_told_apart_by_nothing_and_that_is_said() {
+        let v = "v".to_string();
+        let [a, b] = ["force", "u"].map(|into| named("linear", into, Some(&v)));
+        let [lag, delay] = ["lag", "delay"].map(|effect| named(effect, "u", None));
+        let (track, told_apart_by) = (Track::ParametersTrusted, vec![]);
+        let causes = [lag.clone(), delay.clone()];
+        let mut outlook = Outlook {
+            schema: 1,
+            samples: 100,
+            noise_floor: std::collections::BTreeMap::new(),
+            causes: vec![visible(a.clone(), &["u"])],
+            look_alikes: vec![LookAlikes {
+                causes,
+                track,
+                rho: 1.0,
+                separation: 0.0,
+                told_apart_by,
+                twins: true,
+            }],
+            experiments: vec![],
+            interrupted: false,
+        };
+        assert!(experiments(&outlook, [&a, &b]).contains("the predicted difference is zero"));
+        assert!(experiments(&outlook, [&lag, &delay]).contains("no experiment with these inputs"));
+        assert!(experiments(&outlook, [&a, &lag]).contains("more of the same data"));
+        outlook.look_alikes[0].twins = false;
+        assert!(experiments(&outlook, [&lag, &delay]).contains("none of those"));
+    }
 }

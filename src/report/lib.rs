@@ -44,7 +44,7 @@ pub use training::TrainingReport;
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
 pub use self::{
-    documents::{Beside, Document, cause_document},
+    documents::{Document, FileNames, cause_document},
     figure::{Figure, Role, Scale},
     learned::LearnedCurve,
     page::{Cell, Page, share},

@@ -123,4 +123,10 @@ fn manual_pages_and_exit_statuses() {
     assert!(folder.join("pages/lacuna-diagnose.1").exists());
     let (long, brief) = (run(&folder, "--help").exits(0), run(&folder, "-h").exits(0));
     assert!(long.out.contains("Exit status") && !brief.out.contains("Exit status"));
+    // of a command, the examples; what its files and keys mean is in the long help
+    let long = run(&folder, "plan --help").exits(0).out;
+    let brief = run(&folder, "plan -h").exits(0).out;
+    assert!(brief.contains("lacuna plan --model press.toml"), "{brief}");
+    assert!(long.contains("look_alikes") && !brief.contains("look_alikes"), "{brief}");
+    assert!(brief.lines().count() < long.lines().count());
 }

@@ -44,6 +44,8 @@ pub use outlook::{Experiment, LookAlikes, Outlook, Supposed, Visibility};
 const SHOWS: f64 = 3.5;
 /// Correlation above which two effects look alike.
 const ALIKE: f64 = 0.95;
+/// Correlation from which two effects are one and the same, to the rounding of their derivatives.
+const TWINS: f64 = 1.0 - 1e-9;
 /// What D has to be to tell two effects apart.
 const ENOUGH: f64 = 10.0;
 /// Asks what records can see of a system's causes and tell apart.

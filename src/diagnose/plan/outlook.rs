@@ -65,6 +65,9 @@ pub struct LookAlikes {
     pub separation: f64,
     /// Names of the experiments that tell them apart.
     pub told_apart_by: Vec<String>,
+    /// Whether no experiment with these inputs and sensors tells them apart: small effects of the
+    /// two are one and the same, to rounding, in the record and in every experiment simulated.
+    pub twins: bool,
 }
 
 /// Another experiment, simulated.
@@ -104,6 +107,19 @@ pub struct Outlook {
 }
 
 impl Outlook {
+    /// Whether two causes are one and the same in the model's equations, each at a place of its
+    /// own: an effect of the same coordinate, at places that [`Visibility::same_as`] puts together.
+    pub fn is_same(&self, pair: [&Supposed; 2]) -> bool {
+        self.causes.iter().any(|known| {
+            pair.iter().all(|cause| {
+                let places = std::iter::once(&known.cause.into).chain(&known.same_as);
+                cause.effect == known.cause.effect
+                    && cause.of == known.cause.of
+                    && places.into_iter().any(|place| *place == cause.into)
+            })
+        })
+    }
+
     /// Look-alikes as sets in which every two are alike, the parameters being trusted; the most
     /// alike are put together first, and each cause stands in one set at most.
     pub fn sets(&self) -> Vec<Vec<&Supposed>> {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::look::{Left, Look, with_sensors};
 use super::outlook::{Experiment, LookAlikes, Outlook};
 use super::visible::{shows, supposed, visibility};
-use super::{ALIKE, ENOUGH, experiments};
+use super::{ALIKE, ENOUGH, TWINS, experiments};
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::library::{Allowed, library};
 use crate::fit::hypothesis::Track;
@@ -56,8 +56,10 @@ impl Planning<'_, '_> {
         let visible: Vec<bool> = (0..causes.len()).map(|i| shows(&causes[i], &held, i)).collect();
         let pairs = self.pairs((&held, &moved), &sizes, &visible, &is_free);
         let mut told: Vec<Vec<String>> = vec![vec![]; pairs.len()];
+        // one and the same: not for the record alone, but under every input that is tried
+        let mut twins: Vec<bool> = pairs.iter().map(|pair| pair.3 >= TWINS).collect();
         let mut experiments = vec![];
-        let mut judge = |name: &str, description: &str, look: Option<Look>| {
+        let mut judge = |name: &str, description: &str, look: Option<Look>, is_sensor: bool| {
             let Some(look) = look else {
                 let failed = Some("the model cannot be simulated under these inputs".into());
                 experiments.push(Experiment {
@@ -72,8 +74,10 @@ impl Planning<'_, '_> {
             };
             let (held, moved) = (look.left(&look.trusted), look.left(&look.free));
             let mut count = [0, 0];
-            for (told, &(i, j, track, ..)) in told.iter_mut().zip(&pairs) {
+            let of_pairs = told.iter_mut().zip(&mut twins).zip(&pairs);
+            for ((told, twins), &(i, j, track, ..)) in of_pairs {
                 let left = if track == Track::ParametersTrusted { &held } else { &moved };
+                *twins &= is_sensor || left.rho(i, j) >= TWINS;
                 if left.rho(i, j) <= ALIKE && left.separation(i, j, &sizes) >= ENOUGH {
                     told.push(name.into());
                     count[usize::from(track == Track::ParametersFree)] += 1;
@@ -95,7 +99,7 @@ impl Planning<'_, '_> {
             }
             self.watch.tell(0.3 + 0.1 * i as f64, &format!("simulating: {}", other.name));
             let look = self.under(other.drive, &asked, nuisance);
-            judge(&other.name, &other.description, look);
+            judge(&other.name, &other.description, look, false);
         }
         let sensors = if self.watch.stopped() { vec![] } else { self.sensors() };
         self.watch.tell(0.8, "simulating further sensors");
@@ -107,17 +111,19 @@ impl Planning<'_, '_> {
                     "a sensor of {} beside those there are, with noise of {size}{unit}{}",
                     sensor.name, sensor.unit
                 );
-                judge(&format!("sensor {}", sensor.name), &described, Some(look));
+                judge(&format!("sensor {}", sensor.name), &described, Some(look), true);
             }
         }
         experiments.sort_by_key(|e| {
             std::cmp::Reverse((e.tells_apart, e.tells_apart_free, e.also_shows.len()))
         });
         let names = problem.base.signals.outputs.iter().map(|s| s.name.clone());
-        let look_alikes = pairs.iter().zip(told).map(|(&(i, j, track, rho, separation), told)| {
-            let causes = [supposed(&causes[i]), supposed(&causes[j])];
-            LookAlikes { causes, track, rho, separation, told_apart_by: told }
-        });
+        let look_alikes =
+            pairs.iter().zip(told.into_iter().zip(twins)).map(|(pair, (told, twins))| {
+                let &(i, j, track, rho, separation) = pair;
+                let causes = [supposed(&causes[i]), supposed(&causes[j])];
+                LookAlikes { causes, track, rho, separation, told_apart_by: told, twins }
+            });
         Some(Outlook {
             schema: 1,
             samples: problem.samples(Part::Fit).count(),

@@ -14,7 +14,7 @@ const SCHEMA: u32 = 1;
 
 /// Names of the files beside the document.
 #[derive(Debug, Clone, Copy)]
-pub struct Beside<'a> {
+pub struct FileNames<'a> {
     /// File of the extended model.
     pub extended_model: &'a str,
     /// File of the page.
@@ -104,8 +104,8 @@ fn said_withdrawn(withdrawn: &Withdrawn) -> SaidWithdrawn<'_> {
 
 impl<'a> Document<'a> {
     /// Of a finding, the files beside it, and where it is from.
-    pub fn of(finding: &'a Finding, beside: Beside<'a>, provenance: &'a Provenance) -> Self {
-        let Beside { extended_model, report } = beside;
+    pub fn of(finding: &'a Finding, files: FileNames<'a>, provenance: &'a Provenance) -> Self {
+        let FileNames { extended_model, report } = files;
         let date = &provenance.date;
         let (schema, finding, more) = (SCHEMA, Said(finding), serde_json::Map::new());
         Self { schema, finding, extended_model, report, more, provenance, date }

@@ -11,7 +11,7 @@ mod look;
 mod simulate;
 
 pub use check::goodness_of_fit;
-pub use diagnosis::{Beside, Document, cause_document};
+pub use diagnosis::{Document, FileNames, cause_document};
 pub use estimate::{estimated, linear};
 pub use fit::{Fitted, fitted, scores};
 pub use look::{looked, missing};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::diagnose::{Experiment, LookAlikes, Outlook, Track, Visibility};
+use crate::diagnose::{Experiment, LookAlikes, Outlook, Supposed, Track, Visibility};
 use crate::digits::{number, spaced};
 
 /// Names in one list at most.
@@ -37,6 +37,11 @@ pub fn visibility(cause: &Visibility) -> String {
 pub fn look_alikes(pair: &LookAlikes) -> String {
     let [a, b] = &pair.causes;
     let told = match &pair.told_apart_by[..] {
+        [] if pair.twins => {
+            "no experiment with these inputs tells them apart: while they are small \
+                             the predicted difference is zero"
+                .into()
+        }
         [] => "nothing tried here tells them apart".into(),
         by => format!("told apart by: {}", by.join(", ")),
     };
@@ -59,6 +64,29 @@ pub fn experiment(of: &Experiment, [trusted, free]: [usize; 2]) -> String {
         free => format!(" ({tells_apart_free} of {free} if parameters are free)"),
     };
     format!("{name} ({description}): tells apart {tells_apart} of {trusted} pairs{more}{also}")
+}
+
+/// Whether every two of a set are one and the same under every input.
+fn are_twins(outlook: &Outlook, set: &[&Supposed]) -> bool {
+    let inside = |pair: &&LookAlikes| pair.causes.iter().all(|cause| set.contains(&cause));
+    outlook.look_alikes.iter().filter(inside).all(|pair| pair.twins)
+}
+
+/// The causes that are the same at several places of the model's equations.
+fn same(outlook: &Outlook) -> Option<String> {
+    let all: Vec<String> = outlook
+        .causes
+        .iter()
+        .filter(|cause| !cause.same_as.is_empty())
+        .map(|cause| format!("{}, or into {}", cause.cause, cause.same_as.join(" or ")))
+        .collect();
+    (!all.is_empty()).then(|| {
+        format!(
+            "The same in the model's equations, so that no experiment with these inputs tells the \
+             places apart: {}",
+            names(&all)
+        )
+    })
 }
 
 /// Everything that a record can see and tell apart.
@@ -97,12 +125,16 @@ pub fn outlook(outlook: &Outlook) -> String {
     }
     for set in &sets {
         let told = match outlook.best_for(set) {
+            None if are_twins(outlook, set) => "no experiment with these inputs tells any of them \
+                                                apart: the predicted difference is zero"
+                .into(),
             None => "nothing tried here tells any of them apart".into(),
             Some((name, told, pairs)) if told == pairs => format!("told apart by {name}"),
             Some((name, told, pairs)) => format!("{name} tells {told} of {pairs} pairs apart"),
         };
         lines.push(format!("Look alike: {} -- {told}", names(set)));
     }
+    lines.extend(same(outlook));
     let only_free = |p: &&LookAlikes| p.track == Track::ParametersFree;
     let more = outlook.look_alikes.iter().filter(only_free).count();
     if more > 0 {
