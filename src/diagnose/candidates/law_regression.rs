@@ -8,8 +8,11 @@ use crate::estimate::law::regressions;
 use crate::optimise::Bounds;
 
 /// Where a law meets a curve best, coefficients within their signs: knobs and the sum of squares that is
-/// left, best first.
+/// left, best first; none of a law with a memory of its own, which is no curve.
 pub(crate) fn hills(cause: &Candidate, z: &[f64], w: &[f64]) -> Vec<(Vec<f64>, f64)> {
+    if !cause.is_curve() {
+        return vec![];
+    }
     // what is no number of this cause (a slope that is 1 on a path of its own) stays what it is
     let range = |i: usize| match cause.linear.contains(&i) || cause.refine.contains(&i) {
         true => cause.bounds(i),
@@ -17,4 +20,25 @@ pub(crate) fn hills(cause: &Candidate, z: &[f64], w: &[f64]) -> Vec<(Vec<f64>, f
     };
     let (lower, upper) = (0..cause.card.knobs.len()).map(range).unzip();
     regressions(cause.shape.as_ref(), &cause.starts, &Bounds { lower, upper }, (z, w))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::*;
+    use crate::search::fixture::candidate;
+
+    #[test]
+    fn a_law_with_a_memory_is_no_curve_to_regress() {
+        let z: Vec<f64> = (0..50).map(|k| f64::from(k) / 25.0 - 1.0).collect();
+        let w: Vec<f64> = z.iter().map(|z| 3.0 * z).collect();
+        let law = candidate("a");
+        assert!(!hills(&law, &z, &w).is_empty());
+        let card =
+            crate::register::effects().into_iter().find(|(card, _)| card.name == "extra_mode");
+        let Some((_, shape)) = card else { return };
+        let own = Arc::new(Candidate { card: shape.card(), shape, ..law });
+        assert!(hills(&own, &z, &w).is_empty());
+    }
 }
