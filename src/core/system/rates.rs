@@ -141,3 +141,28 @@ impl Rates {
                 })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::file::{Format, parse};
+
+    #[test]
+    fn a_derivative_that_is_another_state_is_a_definition() {
+        let text = |of_q: &str| {
+            format!(
+                "sampling_time = 0.01\n[model.equations]\ninputs = [{{ name = \"u\" }}]\n\
+                 states = [{{ name = \"q\", derivative = \"{of_q}\" }}, {{ name = \"v\", derivative = \"u - c*v\" }}]\n\
+                 outputs = [{{ name = \"y\", value = \"q\" }}]\nparameters = [{{ name = \"c\", value = 1.0 }}]\n"
+            )
+        };
+        let rates = |of_q: &str| {
+            let system = parse(&text(of_q), "two.toml", Format::Toml).unwrap();
+            let plan = system.plan(0.01).unwrap();
+            [0, 1].map(|state| plan.rates.is_definition(state))
+        };
+        assert_eq!(rates("v"), [true, false]);
+        // a factor of 1 that is a parameter may be wrong
+        assert_eq!(rates("c*v"), [false, false]);
+        assert_eq!(rates("v - q"), [false, false]);
+    }
+}

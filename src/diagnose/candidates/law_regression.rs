@@ -30,6 +30,28 @@ mod tests {
     use crate::search::fixture::candidate;
 
     #[test]
+    fn what_is_no_number_of_a_cause_stays_what_it_is() {
+        let z: Vec<f64> = (1..50).map(f64::from).collect();
+        let w: Vec<f64> = z.iter().map(|z| -0.04 * z).collect();
+        let gap = crate::register::effects().into_iter().find(|(card, _)| card.name == "dead_zone");
+        let Some((_, shape)) = gap else { panic!("no dead zone is registered") };
+        let free = Candidate {
+            card: shape.card(),
+            shape: shape.boxed(),
+            starts: vec![vec![1.0, 10.0]],
+            min: vec![f64::NEG_INFINITY, 1.0],
+            max: vec![f64::INFINITY, 60.0],
+            linear: vec![0],
+            refine: vec![1],
+            ..candidate("a")
+        };
+        // a slope that may be anything makes a straight line of a gap beyond the range
+        assert!(hills(&free, &z, &w)[0].0[0] < 0.1);
+        let path = Candidate { linear: vec![], ..free };
+        assert!(hills(&path, &z, &w).iter().all(|(knobs, _)| knobs[0] == 1.0));
+    }
+
+    #[test]
     fn a_law_with_a_memory_is_no_curve_to_regress() {
         let z: Vec<f64> = (0..50).map(|k| f64::from(k) / 25.0 - 1.0).collect();
         let w: Vec<f64> = z.iter().map(|z| 3.0 * z).collect();

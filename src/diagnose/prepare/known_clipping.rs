@@ -148,6 +148,14 @@ mod tests {
         assert_eq!(limits(&clipped, &known), (f64::NEG_INFINITY, 0.9));
         let coarse: Vec<f64> = (0..1000).map(|k| (8.0 * wave(k)).round() / 8.0).collect();
         assert_eq!(limits(&coarse, &known), (f64::NEG_INFINITY, f64::INFINITY));
+        // friction holds a machine where it turns, each time a little elsewhere
+        let held = |k: usize| {
+            let (period, at) = (k / 100, k % 100);
+            let high = 0.8 + 0.01 * (period % 7) as f64;
+            high * (-(at as f64) * std::f64::consts::TAU / 100.0).cos().clamp(-0.95, 0.95)
+        };
+        let held: Vec<f64> = (0..1000).map(held).collect();
+        assert_eq!(limits(&held, &known), (f64::NEG_INFINITY, f64::INFINITY));
         let free: Vec<f64> = (0..1000).map(wave).collect();
         assert_eq!(limits(&free, &known), (f64::NEG_INFINITY, f64::INFINITY));
     }
