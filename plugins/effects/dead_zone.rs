@@ -49,9 +49,11 @@ impl Effect for DeadZone {
         let card = Effect::card(self);
         let at = if view.own_path { [0.05, 0.15, 0.4] } else { [0.2, 0.5, 0.8] };
         let top = view.magnitude(1.0);
-        let range = (0.02 * view.magnitude(0.5), top);
+        // a gap that hardly a sample of a coordinate of one sign reaches is a constant, not a gap
+        let crosses = view.quantile(0.02) < 0.0 && view.quantile(0.98) > 0.0;
+        let least = if crosses { 0.02 * view.magnitude(0.5) } else { view.magnitude(at[0]) };
         let mut search =
-            Search::plain(&card).over(&card, "width", &at.map(|q| view.magnitude(q)), range);
+            Search::plain(&card).over(&card, "width", &at.map(|q| view.magnitude(q)), (least, top));
         search.thresholds = true;
         search
     }
