@@ -34,8 +34,6 @@ pub struct Case {
     pub tests: Vec<(&'static str, Source)>,
     /// Samples left out of the scores.
     pub init: usize,
-    /// Whether the test record is the training record, for want of another.
-    pub alone: bool,
 }
 
 /// All of them.
@@ -54,7 +52,6 @@ pub fn all() -> Vec<Case> {
                 ("arrow without extrapolation", Part("test_arrow.csv", "u", "y", 0..32_000)),
             ],
             init: 50,
-            alone: false,
         },
         Case {
             name: "cascaded_tanks",
@@ -63,7 +60,6 @@ pub fn all() -> Vec<Case> {
             train: File("train.csv", "u", "y"),
             tests: vec![("test", File("test.csv", "u", "y"))],
             init: 5,
-            alone: false,
         },
         Case {
             name: "bouc_wen",
@@ -75,7 +71,6 @@ pub fn all() -> Vec<Case> {
                 ("sine sweep", File("test_sinesweep.csv.gz", "u", "y")),
             ],
             init: 50,
-            alone: false,
         },
         Case {
             name: "wiener_hammerstein",
@@ -84,7 +79,6 @@ pub fn all() -> Vec<Case> {
             train: File("train.csv", "u", "y"),
             tests: vec![("test", File("test.csv", "u", "y"))],
             init: 50,
-            alone: false,
         },
         Case {
             name: "rlc",
@@ -93,7 +87,6 @@ pub fn all() -> Vec<Case> {
             train: File("train_nonlinear.csv", "u", "capacitor_voltage"),
             tests: vec![("test", File("test_nonlinear.csv", "u", "capacitor_voltage"))],
             init: 0,
-            alone: false,
         },
         Case {
             name: "rack_pinion",
@@ -103,7 +96,6 @@ pub fn all() -> Vec<Case> {
             // there is one stroke and no other
             tests: vec![("the same stroke", Rack)],
             init: 0,
-            alone: true,
         },
         Case {
             name: "heat_exchanger",
@@ -112,7 +104,6 @@ pub fn all() -> Vec<Case> {
             train: Part("record.csv", "u", "y", 0..3000),
             tests: vec![("last 1000", Part("record.csv", "u", "y", 3000..4000))],
             init: 50,
-            alone: false,
         },
         Case {
             name: "robot_arm",
@@ -121,7 +112,6 @@ pub fn all() -> Vec<Case> {
             train: Counted("record.csv", "u", "y", 0..700),
             tests: vec![("last 324", Counted("record.csv", "u", "y", 700..1024))],
             init: 50,
-            alone: false,
         },
         Case {
             name: "f16",
@@ -131,7 +121,6 @@ pub fn all() -> Vec<Case> {
             train: Part("record.csv", "x1", "y", 8192..16_384),
             tests: vec![("fourth period", Part("record.csv", "x1", "y", 24_576..32_768))],
             init: 1000,
-            alone: false,
         },
         Case {
             name: "msd_paper, all right",
@@ -140,7 +129,6 @@ pub fn all() -> Vec<Case> {
             train: File("train.csv", "u", "y"),
             tests: vec![("test", File("test.csv", "u", "y"))],
             init: 50,
-            alone: false,
         },
         Case {
             name: "msd_paper, d1 halved",
@@ -149,7 +137,6 @@ pub fn all() -> Vec<Case> {
             train: File("train.csv", "u", "y"),
             tests: vec![("test", File("test.csv", "u", "y"))],
             init: 50,
-            alone: false,
         },
     ]
 }

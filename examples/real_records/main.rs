@@ -59,7 +59,8 @@ impl Case {
             tests.push((*name, source.read(folder)?));
         }
         // a record that has no other is split by the diagnosis itself
-        let test = tests.first().map(|(_, record)| record).filter(|_| !self.alone);
+        let alone = self.tests.first().is_some_and(|(_, source)| *source == self.train);
+        let test = tests.first().map(|(_, record)| record).filter(|_| !alone);
         let diagnosis = Diagnosis::of(&model).init(Init::Samples(self.init));
         let finding = diagnosis.run(&[train], test, &())?;
         let (mut before, mut after) = (vec![], vec![]);

@@ -9,6 +9,7 @@ use lacuna::data::Record;
 use super::Outcome;
 
 /// One record of a set.
+#[derive(PartialEq)]
 pub enum Source {
     /// Columns of a file: the input, the output.
     File(&'static str, &'static str, &'static str),

@@ -7,6 +7,15 @@ use crate::candidates::candidate::Candidate;
 use crate::estimate::law::regressions;
 use crate::optimise::Bounds;
 
+/// Samples of a coordinate that a law is regressed on.
+const SAMPLES: usize = 400;
+
+/// A coordinate along a record, thinned out evenly.
+pub(crate) fn thinned(z: &[f64]) -> Vec<f64> {
+    let count = SAMPLES.min(z.len());
+    (0..count).map(|i| z[i * z.len() / count]).collect()
+}
+
 /// Where a law meets a curve best, coefficients within their signs: knobs and the sum of squares that is
 /// left, best first; none of a law with a memory of its own, which is no curve.
 pub(crate) fn hills(cause: &Candidate, z: &[f64], w: &[f64]) -> Vec<(Vec<f64>, f64)> {
@@ -24,20 +33,23 @@ pub(crate) fn hills(cause: &Candidate, z: &[f64], w: &[f64]) -> Vec<(Vec<f64>, f
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
     use super::*;
+    use crate::effect::CandidateEffect;
     use crate::search::fixture::candidate;
+
+    fn effect(name: &str) -> Box<dyn CandidateEffect> {
+        let all = crate::register::effects();
+        all.into_iter().find(|(card, _)| card.name == name).unwrap().1.boxed()
+    }
 
     #[test]
     fn what_is_no_number_of_a_cause_stays_what_it_is() {
         let z: Vec<f64> = (1..50).map(f64::from).collect();
         let w: Vec<f64> = z.iter().map(|z| -0.04 * z).collect();
-        let gap = crate::register::effects().into_iter().find(|(card, _)| card.name == "dead_zone");
-        let Some((_, shape)) = gap else { panic!("no dead zone is registered") };
+        let shape = effect("dead_zone");
         let free = Candidate {
             card: shape.card(),
-            shape: shape.boxed(),
+            shape,
             starts: vec![vec![1.0, 10.0]],
             min: vec![f64::NEG_INFINITY, 1.0],
             max: vec![f64::INFINITY, 60.0],
@@ -57,10 +69,8 @@ mod tests {
         let w: Vec<f64> = z.iter().map(|z| 3.0 * z).collect();
         let law = candidate("a");
         assert!(!hills(&law, &z, &w).is_empty());
-        let card =
-            crate::register::effects().into_iter().find(|(card, _)| card.name == "extra_mode");
-        let Some((_, shape)) = card else { return };
-        let own = Arc::new(Candidate { card: shape.card(), shape, ..law });
+        let shape = effect("extra_mode");
+        let own = Candidate { card: shape.card(), shape, ..law };
         assert!(hills(&own, &z, &w).is_empty());
     }
 }

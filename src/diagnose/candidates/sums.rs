@@ -1,7 +1,7 @@
 //! Sums of laws at one place, F(z) = f_1(z) + f_2(z) + ...: one cause with several parts.
 
 use crate::candidates::coordinate::along;
-use crate::candidates::law_regression::hills;
+use crate::candidates::law_regression::{hills, thinned};
 use crate::effect::curve;
 use crate::fit::problem::{Grain, Model, Problem};
 use crate::prepare::operating_range::Nominal;
@@ -34,9 +34,7 @@ impl Model {
     }
 }
 
-/// Samples of a coordinate that laws are compared on, and the share of the squares of a curve by which
-/// laws that are as near to it may differ.
-const SAMPLES: usize = 400;
+/// Share of the squares of a curve by which laws that are as near to it may differ.
 const AS_NEAR: f64 = 0.01;
 
 /// The laws of one place by how near each alone would come to their sum along the record, the nearest
@@ -52,8 +50,7 @@ pub(crate) fn by_likeness(
     }
     let z = along(problem, nominal, model, &model.added[own[0]].cause, Grain::Fine);
     let Some(z) = z else { return own };
-    let count = SAMPLES.min(z.len());
-    let z: Vec<f64> = (0..count).map(|i| z[i * z.len() / count]).collect();
+    let z = thinned(&z);
     let sum = model.sum(&own, problem.step(Grain::Fine), &z);
     let unit = AS_NEAR * dot(&sum, &sum).max(f64::MIN_POSITIVE);
     let off = |i: usize| {

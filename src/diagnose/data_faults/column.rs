@@ -95,6 +95,8 @@ fn columns(records: &[Record]) -> Vec<String> {
 }
 
 fn share(before: f64, after: f64, noise: f64) -> f64 {
+    // a simulation that is worse than the mean has no more to lose than the mean has
+    let before = before.min(WORSE_THAN_MEAN);
     let removable = before - noise.min(before);
     if removable > 0.0 { ((before - after) / removable).clamp(0.0, 1.0) } else { 0.0 }
 }
@@ -118,7 +120,7 @@ pub(crate) fn flipped(system: &System, records: &[Record]) -> Result<Option<Faul
     };
     let same = |t: &&(f64, String, Vec<Record>)| t.0 < (1.0 + SAME) * best;
     Ok(Some(Fault {
-        removed: share(before.min(WORSE_THAN_MEAN), *best, noise(system, turned)?),
+        removed: share(before, *best, noise(system, turned)?),
         or_in: tried[1..].iter().filter(same).map(|t| t.1.clone()).collect(),
         ..of_column(FaultKind::SwappedSign, name)
     }))
@@ -142,8 +144,6 @@ pub(crate) fn retimed(system: &System, records: &[Record]) -> Result<Option<Faul
         }
     }
     let Some((after, best)) = best else { return Ok(None) };
-    // a simulation that is worse than the mean has no more to lose than the mean has
-    let before = before.min(WORSE_THAN_MEAN);
     let removed = share(before, after, noise(system, &mended(&best, &part))?);
     Ok((removed >= EXPLAINS).then_some(Fault { removed, ..best }))
 }

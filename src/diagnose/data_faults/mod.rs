@@ -15,7 +15,7 @@ use crate::validate::noise_floor::NoiseFloor;
 
 pub(crate) use column::{flipped, retimed};
 pub(crate) use dead::dead;
-pub(crate) use rows::{gross_errors, strike};
+pub(crate) use rows::{Stretch, gross_errors, stretches, strike};
 
 /// Share of the noise that rounding makes, to be worth a word.
 const COARSE: f64 = 0.5;

@@ -27,13 +27,14 @@ const MOVES: f64 = 0.3;
 
 /// A stretch of equal values.
 #[derive(Debug, Clone, Copy)]
-struct Stretch {
-    from: usize,
-    to: usize,
-    value: f64,
+pub(crate) struct Stretch {
+    pub from: usize,
+    pub to: usize,
+    pub value: f64,
 }
 
-fn stretches(y: &[f64]) -> Vec<Stretch> {
+/// All stretches of equal values of a series, one after the other.
+pub(crate) fn stretches(y: &[f64]) -> Vec<Stretch> {
     let mut all: Vec<Stretch> = vec![];
     for (k, &value) in y.iter().enumerate() {
         match all.last_mut() {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::library::{Allowed, library};
 use crate::data::Record;
-use crate::data_faults::{Fault, FaultKind};
+use crate::data_faults::{Fault, FaultKind, Stretch, stretches};
 use crate::fit::problem::{Model, Problem};
 use crate::prepare::operating_range::Nominal;
 
@@ -31,18 +31,15 @@ fn upper(values: &[f64]) -> Option<f64> {
     let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let next = values.iter().copied().filter(|&v| v < largest).fold(f64::NEG_INFINITY, f64::max);
     let count = |at: f64| values.iter().filter(|&&v| v == at).count();
-    let mut longest = 0;
-    let mut run = 0;
-    for &v in values {
-        run = if v == largest { run + 1 } else { 0 };
-        longest = longest.max(run);
-    }
+    let all = stretches(values);
+    let at_limit = all.iter().filter(|s| s.value == largest);
+    let longest = at_limit.map(|s| s.to - s.from).max().unwrap_or(0);
     let often = count(largest);
     // a series that rests at its largest value most of the time has no limit but a level
     let rests = 2 * often > values.len();
     // on a fine scale, no value but a limit is met time and again
     let fine = count(next) == 1;
-    let turning = stood(values, largest);
+    let turning = stood(&all, largest);
     (often >= COUNT
         && (fine || longest >= RUN)
         && often >= TIMES * count(next)
@@ -52,20 +49,10 @@ fn upper(values: &[f64]) -> Option<f64> {
 }
 
 /// How many equal readings in a row a series has at most where it turns, at values other than one.
-fn stood(values: &[f64], but: f64) -> usize {
-    let (mut longest, mut from) = (0, 0);
-    for k in 1..values.len() {
-        if values[k] == values[k - 1] {
-            continue;
-        }
-        let value = values[from];
-        let turns = from > 0 && (values[from - 1] < value) == (values[k] < value);
-        if turns && value != but {
-            longest = longest.max(k - from);
-        }
-        from = k;
-    }
-    longest
+fn stood(all: &[Stretch], but: f64) -> usize {
+    let turns = |s: &&[Stretch]| (s[0].value < s[1].value) == (s[2].value < s[1].value);
+    let other = all.windows(3).filter(turns).map(|s| &s[1]).filter(|s| s.value != but);
+    other.map(|s| s.to - s.from).max().unwrap_or(0)
 }
 
 /// Makes readings that stand at a limit of the instrument missing values, and says which.

@@ -16,15 +16,13 @@ use super::study::Study;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::coordinate::along;
 use crate::candidates::free_curve::{Drawing, NAME, knots_of};
-use crate::candidates::law_regression::hills;
+use crate::candidates::law_regression::{hills, thinned};
 use crate::effect::curve;
 use crate::fit::problem::{Grain, Model};
 use crate::prepare::input_dependence::DEPENDS;
 
 /// Iterations of a curve.
 const ITERATIONS: usize = 12;
-/// Samples of a coordinate that a law is regressed on.
-const SAMPLES: usize = 400;
 /// Laws of a place that are fitted to their end.
 const LEADING: usize = 2;
 /// Hills of one law that are fitted exactly.
@@ -66,7 +64,7 @@ fn one_place(study: &mut Study<'_, '_>, best: &Fit, own: &[usize], drawn: bool) 
         return read_as_laws(study, &fit, best.posterior());
     }
     let law = best.model.added[own[0]].cause.clone();
-    let z = thinned(study, &best.model, &law)?;
+    let z = coordinate(study, &best.model, &law)?;
     let w = best.model.sum(own, study.problem.step(Grain::Coarse), &z);
     let rest = Fit { model: best.model.without_all(own), ..best.clone() };
     fit_laws(study, &rest, &law, (&z, &w), best.posterior());
@@ -78,7 +76,7 @@ fn one_place(study: &mut Study<'_, '_>, best: &Fit, own: &[usize], drawn: bool) 
 pub(super) fn read_as_laws(study: &mut Study<'_, '_>, drawn: &Fit, top: f64) -> Option<()> {
     let at = drawn.model.added.len().checked_sub(1)?;
     let curved = &drawn.model.added[at];
-    let z = thinned(study, &drawn.model, &curved.cause)?;
+    let z = coordinate(study, &drawn.model, &curved.cause)?;
     let w = curve(curved.cause.shape.as_ref(), &curved.knobs, &z);
     let rest = Fit { model: drawn.model.without(at), ..drawn.clone() };
     fit_laws(study, &rest, &curved.cause, (&z, &w), top);
@@ -86,10 +84,9 @@ pub(super) fn read_as_laws(study: &mut Study<'_, '_>, drawn: &Fit, top: f64) -> 
 }
 
 /// The coordinate of a cause along the record, thinned out.
-fn thinned(study: &Study<'_, '_>, model: &Model, cause: &Candidate) -> Option<Vec<f64>> {
+fn coordinate(study: &Study<'_, '_>, model: &Model, cause: &Candidate) -> Option<Vec<f64>> {
     let z = along(study.problem, study.nominal, model, cause, Grain::Coarse)?;
-    let count = SAMPLES.min(z.len());
-    Some((0..count).map(|i| z[i * z.len() / count]).collect())
+    Some(thinned(&z))
 }
 
 /// Every law of a place beside the rest, from where it meets the pairs (z, w) best.
