@@ -3,6 +3,7 @@
 
 mod column;
 mod dead;
+mod equal_readings;
 mod rows;
 
 use std::collections::BTreeMap;
@@ -15,7 +16,8 @@ use crate::validate::noise_floor::NoiseFloor;
 
 pub(crate) use column::{flipped, retimed};
 pub(crate) use dead::dead;
-pub(crate) use rows::{Stretch, gross_errors, stretches, strike};
+pub(crate) use equal_readings::{Stretch, stretches};
+pub(crate) use rows::{gross_errors, strike};
 
 /// Share of the noise that rounding makes, to be worth a word.
 const COARSE: f64 = 0.5;

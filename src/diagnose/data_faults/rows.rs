@@ -1,5 +1,6 @@
 //! Samples that the instrument made up: dropouts, and readings that stand still.
 
+use super::equal_readings::{Stretch, stretches};
 use super::{Fault, FaultKind};
 use crate::data::Record;
 use crate::statistics::{deviation, gross, median};
@@ -24,27 +25,6 @@ const LONGER: usize = 6;
 const NATURE: f64 = 0.3;
 /// The machine moves by this share of its standard deviation while a reading stands still.
 const MOVES: f64 = 0.3;
-
-/// A stretch of equal values.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Stretch {
-    pub from: usize,
-    pub to: usize,
-    pub value: f64,
-}
-
-/// All stretches of equal values of a series, one after the other.
-pub(crate) fn stretches(y: &[f64]) -> Vec<Stretch> {
-    let mut all: Vec<Stretch> = vec![];
-    for (k, &value) in y.iter().enumerate() {
-        match all.last_mut() {
-            Some(last) if last.value == value && last.to == k => last.to = k + 1,
-            _ if value.is_finite() => all.push(Stretch { from: k, to: k + 1, value }),
-            _ => {}
-        }
-    }
-    all
-}
 
 /// Median size of a step between samples, as a standard deviation.
 fn usual_step(y: &[f64]) -> f64 {
