@@ -129,7 +129,6 @@ fn a_cubic_law_and_a_dead_zone_are_not_told_as_a_gain() {
 }
 
 #[test]
-#[ignore = "fails since regressions hold what is no number of a cause: the search ends two exchanges short"]
 fn two_wrong_laws_that_leave_white_noise_give_way_to_two_that_are_more_probable() {
     // a cubic law of the input and one of the fifth power of the current, instead of a saturation
     // and a cubic law

@@ -64,6 +64,25 @@ mod tests {
     }
 
     #[test]
+    fn a_law_without_a_number_to_fit_is_asked_where_it_stands() {
+        let z: Vec<f64> = (-20..20).map(f64::from).collect();
+        let w: Vec<f64> = z.iter().map(|z| z.clamp(-5.0, 5.0) - z).collect();
+        let shape = effect("saturation");
+        let limits = Candidate {
+            card: shape.card(),
+            shape,
+            starts: vec![vec![-9.0, 9.0], vec![-5.0, 5.0]],
+            min: vec![-20.0, 0.0],
+            max: vec![0.0, 20.0],
+            linear: vec![],
+            refine: vec![0, 1],
+            ..candidate("a")
+        };
+        let best = hills(&limits, &z, &w);
+        assert_eq!(best[0], (vec![-5.0, 5.0], 0.0));
+    }
+
+    #[test]
     fn a_law_with_a_memory_is_no_curve_to_regress() {
         let z: Vec<f64> = (0..50).map(|k| f64::from(k) / 25.0 - 1.0).collect();
         let w: Vec<f64> = z.iter().map(|z| 3.0 * z).collect();

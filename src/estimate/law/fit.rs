@@ -169,9 +169,6 @@ fn fitted(
     let places: Vec<(usize, usize)> = (parts.iter().zip(ranges).enumerate())
         .flat_map(|(number, (part, range))| free(part, range).map(move |knob| (number, knob)))
         .collect();
-    if places.is_empty() {
-        return None;
-    }
     let of = |from: &dyn Fn(usize, usize) -> f64| {
         places.iter().map(|&(part, knob)| from(part, knob)).collect::<Vec<f64>>()
     };
@@ -185,7 +182,9 @@ fn fitted(
     }
     let scales = theta.iter().map(|value| if *value == 0.0 { 1.0 } else { value.abs() }).collect();
     let sum = Sum { parts, places, start, bounds, scales, z, w };
-    LevenbergMarquardt::default().fit(&sum, &mut theta, &mut ()).ok()?;
+    if !theta.is_empty() {
+        LevenbergMarquardt::default().fit(&sum, &mut theta, &mut ()).ok()?;
+    }
     let knobs = sum.knobs(&theta);
     let left = squares(&sum.left(&knobs));
     left.is_finite().then_some((knobs, left))
