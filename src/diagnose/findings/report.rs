@@ -28,7 +28,7 @@ use crate::validate::test_error::Counted;
 /// Share of the removable error that a curve of unknown shape must remove to explain it.
 const EXPLAINED: f64 = 0.8;
 /// Share of the removable error that named causes must account for, within what is known of it.
-pub(crate) const MOST: f64 = 0.5;
+const MOST: f64 = 0.5;
 /// Score of the Ljung-Box test below which a residual counts as white.
 const WHITE: f64 = 3.0;
 

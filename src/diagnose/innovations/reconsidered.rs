@@ -6,9 +6,8 @@ use super::compete::{Rivals, extended, left, predictor, step};
 use super::conversion::{carried_over, finished};
 use crate::candidates::library::Allowed;
 use crate::error::DiagnoseError;
-use crate::findings::report::MOST;
 use crate::fit::finished::Finished;
-use crate::fit::problem::{Grain, Part};
+use crate::fit::problem::Part;
 use crate::fit::refit::MANY;
 use crate::prepare::input_dependence::{DEPENDS, dependence};
 use crate::prepare::prepared::Prepared;
@@ -104,7 +103,7 @@ fn by_innovations(
     }
     let mut told = finished(prepared, allowed, (&base, &found))?;
     told.dependence = depends(prepared, (&base, &found), &told)?;
-    if none && (told.dependence > DEPENDS || removes_most(prepared, answer)) {
+    if none && told.dependence > DEPENDS {
         return None;
     }
     // a likelihood is exact, a model is not: what it predicts must not get worse
@@ -130,15 +129,6 @@ fn depends(
         y.iter().zip(next).map(|(y, e)| if e.is_finite() { y - e } else { *y }).collect()
     });
     Some(dependence(problem, &prepared.nominal, &foreseen.collect::<Vec<Vec<f64>>>()))
-}
-
-/// Whether what an answer names removes most of the error of a free run where nothing was fitted: noise
-/// that could do as much would be no less than a cause.
-fn removes_most(prepared: &Prepared<'_>, answer: &Finished) -> bool {
-    let problem = &prepared.problem;
-    let Some(y) = problem.simulate(&prepared.start, Grain::Fine) else { return true };
-    let held = |y: &[Vec<f64>]| problem.mean_square(y, Part::Choose);
-    held(&answer.y) < (1.0 - MOST) * held(&y)
 }
 
 /// Parameters moved; along a ridge it is one, whichever.
