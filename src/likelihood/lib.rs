@@ -25,6 +25,7 @@ mod evidence;
 mod explain;
 mod explanation;
 mod follow;
+mod forgetting;
 mod held_out;
 mod hypothesis;
 mod intensities;

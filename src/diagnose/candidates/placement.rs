@@ -121,9 +121,12 @@ impl Builder<'_, '_> {
         match card.needs {
             Needs::Nothing => {
                 // the path of an input has its own offset already
-                if !is_input {
-                    let spot = Spot { target, source: None, own_path: false };
-                    self.push(name, shape, card, spot, 0.0, None, twins(None));
+                match is_input {
+                    true => self.also_stands_for(name, target, None, &twins(None)),
+                    false => {
+                        let spot = Spot { target, source: None, own_path: false };
+                        self.push(name, shape, card, spot, 0.0, None, twins(None));
+                    }
                 }
                 return;
             }
@@ -137,7 +140,9 @@ impl Builder<'_, '_> {
         }
         for &source in sources {
             if input_of_group(source) {
-                continue; // the same as a curve in the input's own path
+                // the same as a curve in the input's own path
+                self.also_stands_for(name, target, Some(source), &twins(Some(source)));
+                continue;
             }
             let spot = Spot { target, source: Some(source), own_path: false };
             let signal = &base.sources.entries[source].0;
@@ -206,6 +211,23 @@ impl Builder<'_, '_> {
             }
             self.passed_on(name, shape, card, target, source);
         }
+    }
+
+    /// The law of a name in an input's own path is that of the channels that push as it does.
+    fn also_stands_for(
+        &mut self,
+        name: &str,
+        target: usize,
+        source: Option<usize>,
+        twins: &[(String, Option<String>, f64)],
+    ) {
+        let base = &self.problem.base;
+        let into = &base.targets.entries[target].0.name;
+        let of = source.map(|source| &base.sources.entries[source].0.name);
+        let own = |cause: &&mut Candidate| {
+            cause.effect == name && cause.into == *into && cause.of.as_ref() == of
+        };
+        self.found.iter_mut().filter(own).for_each(|cause| cause.twins = twins.to_vec());
     }
 
     /// What leaves one store and enters another: the same law with the other sign into a

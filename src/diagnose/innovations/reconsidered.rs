@@ -33,8 +33,46 @@ pub(crate) fn search(
     most: usize,
     watch: &dyn Watch,
 ) -> Result<Answer, DiagnoseError> {
+    if let Some(found) = directly(prepared, allowed, most, watch)? {
+        return Ok((found, None));
+    }
     let answer = prepared.search(allowed, most, watch)?;
     Ok(reconsidered(prepared, allowed, most, answer, watch))
+}
+
+/// What the innovations find in records of a model that forgets nothing within them, where noise inside
+/// the plant is called for beside it. A free run of such a model follows that noise, not the causes, and
+/// a search by it is long; where the noise is not called for, it is the one that sees more.
+fn directly(
+    prepared: &mut Prepared<'_>,
+    allowed: &Allowed,
+    most: usize,
+    watch: &dyn Watch,
+) -> Result<Option<Finished>, DiagnoseError> {
+    if allowed.sensor_noise || most == 0 || is_many(prepared) {
+        return Ok(None);
+    }
+    let forgets = predictor(&prepared.problem, &prepared.start, allowed).and_then(|p| p.forgets());
+    if forgets.unwrap_or(true) {
+        return Ok(None);
+    }
+    let nothing = prepared.search(allowed, 0, watch)?;
+    watch.tell(0.1, "searching by innovations");
+    let found = by_innovations(prepared, allowed, most, &nothing, watch);
+    Ok(found.filter(|found| is_called_for(prepared, allowed, found).unwrap_or(false)))
+}
+
+/// Whether noise inside the plant is clearly more probable beside an answer.
+fn is_called_for(prepared: &Prepared<'_>, allowed: &Allowed, of: &Finished) -> Option<bool> {
+    let problem = &prepared.problem;
+    let base = predictor(problem, &of.fitted.model, allowed).ok()?;
+    let system = prepared.context().extend(&of.fitted.model).ok()?;
+    Some(Rivals::of(&extended(&base, &system, step(problem))?).call_for_more(CLEARLY))
+}
+
+/// Whether records are in so many pieces that no filter is worth starting in each.
+fn is_many(prepared: &Prepared<'_>) -> bool {
+    prepared.problem.drive.segments.len() >= MANY
 }
 
 /// What a search over some samples found, on all of these records.
@@ -57,8 +95,8 @@ fn reconsidered(
     answer: Finished,
     watch: &dyn Watch,
 ) -> Answer {
-    let many = prepared.problem.drive.segments.len() >= MANY;
-    if allowed.sensor_noise || most == 0 || many || watch.stopped() || is_white(prepared, &answer) {
+    let asked = !allowed.sensor_noise && most > 0 && !is_many(prepared);
+    if !asked || watch.stopped() || is_white(prepared, &answer) {
         return (answer, None);
     }
     watch.tell(0.9, "asking for noise inside the plant");
