@@ -33,6 +33,8 @@ impl Effect for StribeckFriction {
         .needs(Needs::Velocity)
         .sign(SignRule::Opposing { polarity: 1 })
         .friction()
+        // what holds it at rest: how fast the addition fades and how large it is make up for each other
+        .stated_as(Size::Total(["level", "extra"]))
         .smoothing_width("width")
         .rank(4)
     }

@@ -12,6 +12,8 @@
 
 use std::ops::Range;
 
+use nalgebra::DMatrix;
+
 use super::error::LikelihoodError;
 use super::explanation::{Explanation, NamedCause};
 use super::hypothesis::{Hypothesis, Part, names};
@@ -232,15 +234,15 @@ impl Predictor {
         let now = fitted.and_then(|h| self.refit(h)).unwrap_or(now);
         dealt(&mut found, &now);
         let (now, run) = self.evaluated(now)?;
-        let errors = self.errors(&now, &run);
+        let covariances = self.covariances(&now, &run);
         let pass = Pass::of(&run.path, &now.noise, true);
         let smoothed = pass.smoothed(&run.path, &now.noise);
         let nx = self.start.p0.len();
         let begun = starts(&run.path, &smoothed.mean, &Layout::of(run.path.n, &now.noise));
-        let mut errors = errors.into_iter();
+        let mut covariances = covariances.into_iter();
         let choice = found.iter().map(|cause| cause.choice).sum();
         let causes = found.into_iter().map(|cause| {
-            let own = errors.by_ref().take(cause.parts.len()).collect();
+            let own = covariances.by_ref().take(cause.parts.len()).collect();
             self.said(cause, &now.theta, own)
         });
         let causes: Vec<NamedCause> = causes.collect();
@@ -258,22 +260,19 @@ impl Predictor {
         })
     }
 
-    fn said(&self, cause: Found, theta: &[f64], mut errors: Vec<Vec<Option<f64>>>) -> NamedCause {
+    fn said(&self, cause: Found, theta: &[f64], covariances: Vec<DMatrix<f64>>) -> NamedCause {
         let parameter = match cause.place.0 {
             Site::Parameter(p) => {
-                let error = errors.first().and_then(|own| own.first().copied().flatten());
-                Some((theta[p], error))
+                let variance = covariances.first().map_or(0.0, |own| own[(0, 0)]);
+                Some((theta[p], (variance > 0.0).then(|| variance.sqrt())))
             }
             _ => None,
         };
-        if parameter.is_some() {
-            errors.clear();
-        }
         NamedCause {
             into: self.name(cause.place.0),
             of: cause.place.1.map(|e| self.model.plan.sources.entries[e].0.name.clone()),
             laws: self.placed(&cause.parts),
-            errors,
+            covariances: if parameter.is_some() { vec![] } else { covariances },
             parameter,
             log_odds: cause.log_odds,
             probability: cause.law,

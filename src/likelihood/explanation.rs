@@ -1,5 +1,7 @@
 //! What explains a record: causes with their probabilities, and the noise that is left.
 
+use nalgebra::DMatrix;
+
 use super::noise::Noise;
 use super::ranked::FittedLaws;
 use crate::system::Placed;
@@ -13,8 +15,8 @@ pub struct NamedCause {
     pub of: Option<String>,
     /// Laws of the place, an offset of its channel among them; empty for a parameter.
     pub laws: Vec<Placed>,
-    /// Standard errors of the knobs of each law; `None` where they were not fitted.
-    pub errors: Vec<Vec<Option<f64>>>,
+    /// Covariance of the knobs of each law; 0 where they were not fitted.
+    pub covariances: Vec<DMatrix<f64>>,
     /// Value of the parameter, and its standard error.
     pub parameter: Option<(f64, Option<f64>)>,
     /// Log odds against all without it.
@@ -25,6 +27,15 @@ pub struct NamedCause {
     pub place_probability: f64,
     /// Other sets that were fitted in its stead, the most probable first.
     pub others: Vec<FittedLaws>,
+}
+
+impl NamedCause {
+    /// Standard error of a knob of one of its laws; `None` where it was not fitted.
+    #[must_use]
+    pub fn std_error(&self, law: usize, knob: usize) -> Option<f64> {
+        let variance = self.covariances.get(law)?.get((knob, knob))?;
+        (*variance > 0.0).then(|| variance.sqrt())
+    }
 }
 
 /// Everything that explains records.

@@ -1,4 +1,4 @@
-//! Standard errors of what a hypothesis has fitted: roots of the inverse information's diagonal.
+//! Covariance of what a hypothesis has fitted: the inverse of the information.
 //!
 //! I = sum of T' T, T being the tangents of the standardised innovations along all free numbers, at the
 //! noise that was fitted. Source: Ljung, "System Identification", 2nd ed., section 9.4.
@@ -12,8 +12,8 @@ use super::replay::Pass;
 use super::tangent::gram;
 
 impl Predictor {
-    /// Standard errors of every part's knobs, by the inverse of the information.
-    pub(crate) fn errors(&self, of: &Hypothesis, run: &Followed) -> Vec<Vec<Option<f64>>> {
+    /// Covariance of every part's knobs; of knobs that were not fitted it is 0.
+    pub(crate) fn covariances(&self, of: &Hypothesis, run: &Followed) -> Vec<DMatrix<f64>> {
         let columns = self.slopes(of, run);
         let pass = Pass::of(&run.path, &of.noise, false);
         let square = gram(&run.path, &pass, &of.noise, &columns).square;
@@ -21,10 +21,9 @@ impl Predictor {
         let size: Vec<f64> = (0..m).map(|i| square[(i, i)].max(1e-300).sqrt()).collect();
         let scaled = DMatrix::from_fn(m, m, |i, j| square[(i, j)] / size[i] / size[j]);
         let inverse = scaled.try_inverse();
-        let error = |i: usize| {
-            let variance = inverse.as_ref()?[(i, i)];
-            let error = variance.sqrt() / size[i];
-            (error.is_finite() && error > 0.0).then_some(error)
+        let between = |i: usize, j: usize| {
+            let value = inverse.as_ref().map_or(0.0, |inverse| inverse[(i, j)] / size[i] / size[j]);
+            if value.is_finite() { value } else { 0.0 }
         };
         let mut next = 0;
         of.parts
@@ -32,14 +31,16 @@ impl Predictor {
             .map(|part| match part {
                 Part::Parameter(_) => {
                     next += 1;
-                    vec![error(next - 1)]
+                    DMatrix::from_element(1, 1, between(next - 1, next - 1))
                 }
                 Part::Law { law, .. } => {
-                    let mut own = vec![None; law.values.len()];
-                    for &i in &law.free {
-                        own[i] = error(next);
-                        next += 1;
+                    let mut own = DMatrix::zeros(law.values.len(), law.values.len());
+                    for (a, &i) in law.free.iter().enumerate() {
+                        for (b, &j) in law.free.iter().enumerate() {
+                            own[(i, j)] = between(next + a, next + b);
+                        }
                     }
+                    next += law.free.len();
                     own
                 }
             })

@@ -8,6 +8,7 @@
 #[path = "../../src/likelihood/tests/plants.rs"]
 mod plants;
 
+mod bare;
 mod more;
 
 use lacuna::data::{Record, Signal};
@@ -240,7 +241,8 @@ fn causes_are_explained_together_and_the_rest_is_noise() {
     for (of, name, value) in [("rate", "coulomb_friction", -0.4), ("place", "cubic", -4.0)] {
         let cause = found.causes.iter().find(|cause| cause.of.as_deref() == Some(of)).unwrap();
         let at = cause.laws.iter().position(|law| law.effect.typetag_name() == name).unwrap();
-        let (is, error) = (cause.laws[at].effect.card().values()[0], cause.errors[at][0].unwrap());
+        let (is, error) =
+            (cause.laws[at].effect.card().values()[0], cause.std_error(at, 0).unwrap());
         assert!((is - value).abs() < 4.0 * error && error < 0.2 * value.abs(), "{is} +- {error}");
         assert!(cause.place_probability > 0.99 && cause.log_odds > 10.0, "{said}");
     }

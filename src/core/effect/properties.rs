@@ -20,6 +20,8 @@ pub enum Size {
     },
     /// As the factor 1 + this parameter.
     Factor(&'static str),
+    /// By the sum of two coefficients, where a record tells the sum better than either.
+    Total([&'static str; 2]),
 }
 
 /// Properties of an effect beyond its parameters and places; none of them holds by default.

@@ -149,6 +149,8 @@ pub struct Wording {
     pub one_sign: bool,
     /// How its size is stated.
     pub size: Size,
+    /// The sum by which it is stated, with its own standard error.
+    pub total: Option<Value>,
     /// Name of the first coefficient; none where it has none.
     pub first: Option<String>,
     /// What kind of place it enters.

@@ -5,11 +5,13 @@ use std::sync::Arc;
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::naming::title_of;
 use crate::candidates::sums::by_likeness;
+use crate::effect::Size;
 use crate::error::DiagnoseError;
 use crate::findings::cause::{Alternative, Cause, ColumnFault, LawPart, Site, Value, Wording};
 use crate::findings::context::Context;
 use crate::fit::finished::Finished;
 use crate::fit::found::SET;
+use crate::fit::nuisance::Key;
 use crate::fit::problem::{Added, Grain};
 use crate::fit::profile_likelihood;
 use crate::validate::false_discovery::{either, on_test};
@@ -120,7 +122,28 @@ impl Context<'_, '_> {
             true => self.found_law(model, index),
             false => self.found_curve(cause, knobs),
         });
-        LawPart { wording: Wording { shape, ..cause.wording(nominal) }, ..cause.as_part(&values) }
+        let total = self.total(chosen, index);
+        let wording = Wording { shape, total, ..cause.wording(nominal) };
+        LawPart { wording, ..cause.as_part(&values) }
+    }
+
+    /// The sum of two coefficients by which a law is stated: its variance is that of both and twice
+    /// their covariance.
+    fn total(&self, chosen: &Finished, index: usize) -> Option<Value> {
+        let Added { cause, knobs } = &chosen.fitted.model.added[index];
+        let Size::Total(names) = cause.card.properties.size else { return None };
+        let at = |name: &str| cause.card.knobs.iter().position(|knob| knob.name == name);
+        let own = [at(names[0])?, at(names[1])?];
+        let keys = own.map(|i| Key::Knob(index, i));
+        let between = chosen.precision.as_ref().and_then(|precision| precision.between(&keys));
+        let variance = between.map(|between| between.sum());
+        let knob = &cause.card.knobs[own[0]];
+        Some(Value {
+            name: knob.name.to_string(),
+            value: own.iter().map(|&i| knobs[i]).sum(),
+            std_error: variance.filter(|v| *v > 0.0 && v.is_finite()).map(f64::sqrt),
+            unit: knob.unit.text(&cause.units.0, &cause.units.1),
+        })
     }
 
     /// Readings that were cut off by the instrument. The extended model has its limits, as a

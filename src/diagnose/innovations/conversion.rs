@@ -22,10 +22,10 @@ use crate::fit::refit::Fitted;
 use crate::prepare::prepared::Prepared;
 use crate::system::Placed;
 
-/// A law as a cause of the library, and the standard errors of its knobs.
+/// A law as a cause of the library, and the covariance of its knobs.
 struct Law {
     added: Added,
-    errors: Vec<Option<f64>>,
+    covariance: DMatrix<f64>,
 }
 
 /// An explanation as a finished track; `None` where a law of it is not in the library, or the model
@@ -48,15 +48,21 @@ pub(super) fn finished(
     let withdrawn = found.withdrawn.iter().filter_map(|cause| laws_of(&known, cause, theta));
     let withdrawn = withdrawn.flatten().map(|law| law.added).collect();
     let mut keys = vec![];
-    let mut variances = vec![];
-    for (a, Law { added, errors }) in laws.iter().enumerate() {
+    let mut at = vec![];
+    for (a, Law { added, covariance }) in laws.iter().enumerate() {
         let free = added.cause.linear.iter().chain(&added.cause.refine);
-        for (&i, error) in free.filter_map(|i| Some((i, errors.get(*i).copied().flatten()?))) {
+        for &i in free.filter(|&&i| covariance.get((i, i)).is_some_and(|v| *v > 0.0)) {
             keys.push(Key::Knob(a, i));
-            variances.push(error * error);
+            at.push((a, i));
         }
     }
-    let precision = Precision::of(keys.clone(), DMatrix::from_diagonal(&DVector::from(variances)));
+    // laws of different causes as if they did not depend on each other
+    let between = |(a, i): (usize, usize), (b, j): (usize, usize)| match a == b {
+        true => laws[a].covariance[(i, j)],
+        false => 0.0,
+    };
+    let covariance = DMatrix::from_fn(at.len(), at.len(), |i, j| between(at[i], at[j]));
+    let precision = Precision::of(keys.clone(), covariance);
     let added: Vec<Added> = laws.into_iter().map(|law| law.added).collect();
     let started = |starts| Model { theta: theta.clone(), starts, added: added.clone() };
     let models = [started(found.starts.clone()), started(prepared.start.starts.clone())];
@@ -127,21 +133,21 @@ fn laws_of(known: &[Arc<Candidate>], cause: &NamedCause, theta: &[f64]) -> Optio
         let own = known.iter().filter(is_own).find(|c| c.into == cause.into)?;
         let Wire::Parameter(p) = own.wire else { return None };
         let added = Added { cause: own.clone(), knobs: vec![value - theta[p]] };
-        return Some(vec![Law { added, errors: vec![error] }]);
+        let variance = error.map_or(0.0, |error| error * error);
+        return Some(vec![Law { added, covariance: DMatrix::from_element(1, 1, variance) }]);
     }
-    let none = vec![];
     let one = |(i, placed): (usize, &Placed)| {
-        let errors = cause.errors.get(i).unwrap_or(&none);
         let (own, factor) = known.iter().find_map(|c| Some((c, stands_for(c, placed)?)))?;
         let mut knobs = placed.effect.card().values();
-        let mut errors = errors.clone();
+        let mut scale = DVector::repeat(knobs.len(), 1.0);
         for &i in &own.linear {
             knobs[i] *= factor;
-            if let Some(Some(error)) = errors.get_mut(i) {
-                *error *= factor.abs();
-            }
+            scale[i] = factor;
         }
-        Some(Law { added: Added { cause: own.clone(), knobs }, errors })
+        let none = DMatrix::zeros(knobs.len(), knobs.len());
+        let covariance = cause.covariances.get(i).unwrap_or(&none);
+        let covariance = covariance.component_mul(&(&scale * scale.transpose()));
+        Some(Law { added: Added { cause: own.clone(), knobs }, covariance })
     };
     cause.laws.iter().enumerate().map(one).collect()
 }

@@ -139,7 +139,7 @@ fn size(cause: &Cause) -> String {
     match wording.size {
         Size::Wave { order, sine, cosine } => wave(cause, order, sine, cosine),
         Size::Factor(name) => factor(cause, name),
-        Size::First => match headline_value(cause) {
+        Size::First | Size::Total(_) => match headline_value(cause) {
             Some(v) if wording.first.is_some() => format!(", {}", first(cause, v)),
             _ => {
                 let each = cause.parameters.iter().filter(|v| v.value.is_finite());

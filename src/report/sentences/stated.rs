@@ -5,8 +5,11 @@ use crate::diagnose::{Cause, Value};
 /// Standard errors within which a size is not distinguished from 0: half of a 95 % interval.
 pub(super) const HALF: f64 = 2.0;
 
-/// The number that is stated: the first coefficient, else the first number.
+/// The number that is stated: a sum that is known, the first coefficient, else the first number.
 pub(super) fn headline_value(cause: &Cause) -> Option<&Value> {
+    if cause.wording.total.is_some() {
+        return cause.wording.total.as_ref();
+    }
     let first = cause.wording.first.as_deref();
     let named = cause.parameters.iter().find(|v| first == Some(v.name.as_str()));
     named.or(cause.parameters.first())
