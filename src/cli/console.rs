@@ -8,6 +8,7 @@ mod interrupts;
 
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
+use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -15,7 +16,9 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::Common;
+use super::failure::Failure;
 use lacuna::diagnose::Watch;
+use lacuna::fault::Place;
 
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
@@ -29,6 +32,8 @@ pub struct Console {
     /// Whether files that lacuna did not write may be replaced.
     pub force: bool,
     quiet: bool,
+    /// Whether a file goes to stdout, so that words stand aside.
+    taken: AtomicBool,
     /// Every step is to be told in a line of its own.
     verbose: bool,
     course: Mutex<Course>,
@@ -90,6 +95,7 @@ impl Console {
             json,
             force: common.force,
             quiet,
+            taken: AtomicBool::new(false),
             verbose,
             course,
             lively,
@@ -105,8 +111,25 @@ impl Console {
         }
     }
 
+    /// Gives stdout to the file that is written, where its path is `-`: words then go to stderr, so that
+    /// one of both can be piped. Says whether it did.
+    pub fn give_stdout_to(&self, out: &Path) -> Result<bool, Failure> {
+        let taken = out.as_os_str() == "-";
+        if taken && self.json {
+            let place = Place { key: Some("--out".into()), ..Place::default() };
+            let hint = "give --out the name of a file";
+            let message = "--out - and --json both want stdout";
+            return Err(Failure::input(message.into(), place, hint.into()));
+        }
+        self.taken.store(taken, Ordering::Relaxed);
+        Ok(taken)
+    }
+
     /// The result for people: on stdout, also when quiet, unless a program listens.
     pub fn result(&self, text: &str) {
+        if self.taken.load(Ordering::Relaxed) {
+            return self.say(text);
+        }
         if !self.json {
             self.bar.suspend(|| print(&format!("{}\n", harmless(text))));
         }
@@ -128,6 +151,9 @@ impl Console {
 
     /// The sentence that matters.
     pub fn headline(&self, text: &str) {
+        if self.taken.load(Ordering::Relaxed) {
+            return self.say(text);
+        }
         let bold = std::io::stdout().is_terminal() && !no_color();
         let text = harmless(text);
         let text = if bold { format!("\x1b[1m{text}\x1b[0m") } else { text.into_owned() };

@@ -1,25 +1,31 @@
 //! `lacuna estimate`.
 
+use std::path::Path;
+
 use super::args::Estimate as Args;
-use super::console::Console;
+use super::console::{Console, print};
 use super::failure::Failure;
 use super::input;
 use super::outputs;
 use lacuna::diagnose::Diagnosis;
 use lacuna::digits::number;
 use lacuna::estimate::{Estimated, estimate_by, estimate_with};
-use lacuna::file::{Document, Format, save_with};
+use lacuna::file::{Document, Format, save_with, to_toml_with};
 use lacuna::optimise::Named;
 use lacuna::report::{documents, sentences};
+use lacuna::system::System;
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     outputs::distinct(&args.data, &[])?;
     let mut inputs = outputs::paths(&[&args.data]);
     inputs.extend(args.model.as_deref());
-    outputs::check(&inputs, std::slice::from_ref(&args.out), look)?;
+    let piped = look.give_stdout_to(&args.out)?;
+    if !piped {
+        outputs::check(&inputs, std::slice::from_ref(&args.out), look)?;
+        input::writable(&args.out)?;
+    }
     let Some(model) = &args.model else { return super::linear::run(args, look) };
     let (system, want) = input::model(model)?;
-    input::writable(&args.out)?;
     let records = input::records(&args.data, &want, &args.columns, look)?;
     look.hear_interrupts()?;
     // what cannot be simulated with its present values yet is fitted to the records as they are
@@ -36,7 +42,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
         }
     };
     look.clear();
-    save_with(&estimate.system, &args.out, &["Written by `lacuna estimate`.".into()])?;
+    put(&estimate.system, &args.out, "Written by `lacuna estimate`.")?;
     for parameter in &estimate.parameters {
         look.result(&line(parameter));
     }
@@ -51,11 +57,23 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     }
     let (before, after) = estimate.nrmse;
     look.result(&format!("NRMSE {before:.4} before, {after:.4} after"));
-    look.say(&format!("Wrote {}", args.out.display()));
+    if !piped {
+        look.say(&format!("Wrote {}", args.out.display()));
+    }
     let file = args.out.display().to_string();
     let document = documents::estimated(&estimate, Some(&file), &faults);
     look.document(&document.map_err(Failure::unwritable)?);
     Ok(0)
+}
+
+/// Writes a model file, or puts it on stdout where its path is `-`.
+pub fn put(system: &System, path: &Path, header: &str) -> Result<(), Failure> {
+    let header = [header.to_string()];
+    match path.as_os_str() == "-" {
+        true => print(&to_toml_with(system, &header)?),
+        false => save_with(system, path, &header)?,
+    }
+    Ok(())
 }
 
 fn line(p: &Estimated) -> String {

@@ -17,13 +17,14 @@ use super::page::{Block, Cell, Column, Kind, Page};
 const STYLE: &str = concat!(include_str!("vendor/uPlot.min.css"), "\n", include_str!("style.css"));
 
 /// The scripts of a page, in the order in which they use each other.
-const SCRIPTS: [&str; 10] = [
+const SCRIPTS: [&str; 11] = [
     include_str!("vendor/uPlot.iife.min.js"),
     include_str!("web/decode.js"),
     include_str!("web/thin.js"),
     include_str!("web/csv.js"),
     include_str!("web/theme.js"),
     include_str!("web/draw.js"),
+    include_str!("web/legend.js"),
     include_str!("web/chart.js"),
     include_str!("web/gestures.js"),
     include_str!("web/links.js"),

@@ -144,6 +144,39 @@ test("a line is switched off wherever it is shown", async () => {
   await page.close();
 });
 
+test("other laws of a place are drawn when they are asked for, by keys", async () => {
+  for (const name of ["demo", "again", "long"]) {
+    const page = await open(name);
+    const law = async () => (await page.ask(figures)).find((figure) => figure.title.includes("missing in") || figure.title.includes("lacks in"));
+    const before = await law();
+    const focused = await page.ask(() => {
+      const entry = document.querySelector(".others .entry");
+      entry.focus();
+      return { group: entry.parentElement.getAttribute("aria-label"), text: entry.textContent, pressed: entry.getAttribute("aria-pressed") };
+    });
+    assert.equal(focused.group, "Other laws of this place");
+    assert.match(focused.text, /^[a-z_ +]+ \([^)]*%\)/);
+    assert.equal(focused.pressed, "false", "another law is drawn at first");
+    await page.key(" ");
+    assert.equal(await page.ask("document.activeElement.getAttribute('aria-pressed')"), "true");
+    assert.notEqual((await law()).inked, before.inked, `${name}: nothing was drawn`);
+    await page.key(" ");
+    assert.equal((await law()).inked, before.inked);
+    await page.close();
+  }
+});
+
+test("no two items of a figure look the same", async () => {
+  const page = await open("demo");
+  const looks = await page.ask(() => JSON.parse(document.getElementById("figures").textContent).charts.map((chart) =>
+    chart.items.filter((item) => item.label && item.kind === "line").map((item) => {
+      const { width, dash } = LOOKS[item.role];
+      return `${width} ${dash}`;
+    })));
+  for (const list of looks) assert.equal(new Set(list).size, list.length, `${list}`);
+  await page.close();
+});
+
 test("the data of a figure are saved", async () => {
   const page = await open("demo");
   const text = await page.ask(async () => {

@@ -93,7 +93,7 @@ mod tests {
     use super::*;
 
     fn scored(errors: Vec<f64>) -> Scored {
-        Scored { errors: vec![errors], metrics: BTreeMap::new() }
+        Scored { errors: vec![errors], ..Scored::default() }
     }
 
     /// Noise with a pole, of which the best of 50 shapes is chosen on the first half.

@@ -32,7 +32,7 @@ class Chart {
     const { figure, spec } = this;
     this.legend = add(figure, "div", "legend");
     this.position = add(this.legend, "span", "position");
-    this.entries = spec.items.map((item, i) => (item.label ? this.entry(item, i) : null));
+    this.entries = entriesOf(this);
     this.plot = add(figure, "div", "plot");
     this.plot.tabIndex = 0;
     this.plot.setAttribute("role", "group");
@@ -60,23 +60,6 @@ class Chart {
     }
     this.draw();
     gestures(this);
-  }
-
-  /** The button that switches an item on and off, with its look and its value at the cursor. */
-  entry(item, i) {
-    const button = add(this.legend, "button", "entry");
-    button.type = "button";
-    button.setAttribute("aria-pressed", String(this.on[i]));
-    const mark = add(button, "canvas", "mark");
-    [mark.width, mark.height] = [56, 24];
-    mark.setAttribute("aria-hidden", "true");
-    add(button, "bdi", "", item.label);
-    const value = add(button, "output", "value");
-    button.addEventListener("click", () => {
-      this.toggle(i, !this.on[i]);
-      this.onToggle(item.label, this.on[i]);
-    });
-    return { button, mark, value };
   }
 
   /** What the figure holds, for those who cannot see it. */
@@ -117,6 +100,8 @@ class Chart {
       x.values = () => names.map((name) => (narrow ? name.slice(0, 9) : name));
     } else x.values = this.logX ? powers : ticks;
     const y = { ...axis(this.spec.y.label), size: narrow ? AXIS.narrow - 18 : AXIS.wide - 18, gap: 3 };
+    // a low figure has room for more than one number as well
+    if (this.spec.height < 160) y.space = 18;
     y.values = this.logY ? powers : ticks;
     const options = {
       width,
@@ -149,16 +134,8 @@ class Chart {
     this.u?.destroy();
     this.u = new uPlot(options, data, this.plot);
     this.u.over.setAttribute("aria-hidden", "true");
-    this.marks();
+    drawMarks(this);
     this.apply();
-  }
-
-  /** Draws the looks into the legend. */
-  marks() {
-    this.spec.items.forEach((item, i) => {
-      const entry = this.entries[i];
-      if (entry) drawSample(entry.mark.getContext("2d"), item, this.colours[item.role]);
-    });
   }
 
   /** Draws the items between the axes. */
