@@ -8,7 +8,6 @@ mod interrupts;
 
 use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
-use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -16,9 +15,7 @@ use std::time::{Duration, Instant};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::args::Common;
-use super::failure::Failure;
 use lacuna::diagnose::Watch;
-use lacuna::fault::Place;
 
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
@@ -111,18 +108,9 @@ impl Console {
         }
     }
 
-    /// Gives stdout to the file that is written, where its path is `-`: words then go to stderr, so that
-    /// one of both can be piped. Says whether it did.
-    pub fn give_stdout_to(&self, out: &Path) -> Result<bool, Failure> {
-        let taken = out.as_os_str() == "-";
-        if taken && self.json {
-            let place = Place { key: Some("--out".into()), ..Place::default() };
-            let hint = "give --out the name of a file";
-            let message = "--out - and --json both want stdout";
-            return Err(Failure::input(message.into(), place, hint.into()));
-        }
-        self.taken.store(taken, Ordering::Relaxed);
-        Ok(taken)
+    /// Whether a file goes to stdout: words then go to stderr.
+    pub fn stand_aside(&self, aside: bool) {
+        self.taken.store(aside, Ordering::Relaxed);
     }
 
     /// The result for people: on stdout, also when quiet, unless a program listens.

@@ -1,25 +1,23 @@
 //! `lacuna estimate`.
 
-use std::path::Path;
-
 use super::args::Estimate as Args;
-use super::console::{Console, print};
+use super::console::Console;
 use super::failure::Failure;
 use super::input;
 use super::outputs;
+use super::stdout;
 use lacuna::diagnose::Diagnosis;
 use lacuna::digits::number;
 use lacuna::estimate::{Estimated, estimate_by, estimate_with};
-use lacuna::file::{Document, Format, save_with, to_toml_with};
+use lacuna::file::{Document, Format};
 use lacuna::optimise::Named;
 use lacuna::report::{documents, sentences};
-use lacuna::system::System;
 
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     outputs::distinct(&args.data, &[])?;
     let mut inputs = outputs::paths(&[&args.data]);
     inputs.extend(args.model.as_deref());
-    let piped = look.give_stdout_to(&args.out)?;
+    let piped = stdout::given_to(&args.out, look)?;
     if !piped {
         outputs::check(&inputs, std::slice::from_ref(&args.out), look)?;
         input::writable(&args.out)?;
@@ -42,7 +40,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
         }
     };
     look.clear();
-    put(&estimate.system, &args.out, "Written by `lacuna estimate`.")?;
+    stdout::model(&estimate.system, &args.out, "Written by `lacuna estimate`.")?;
     for parameter in &estimate.parameters {
         look.result(&line(parameter));
     }
@@ -64,16 +62,6 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     let document = documents::estimated(&estimate, Some(&file), &faults);
     look.document(&document.map_err(Failure::unwritable)?);
     Ok(0)
-}
-
-/// Writes a model file, or puts it on stdout where its path is `-`.
-pub fn put(system: &System, path: &Path, header: &str) -> Result<(), Failure> {
-    let header = [header.to_string()];
-    match path.as_os_str() == "-" {
-        true => print(&to_toml_with(system, &header)?),
-        false => save_with(system, path, &header)?,
-    }
-    Ok(())
 }
 
 fn line(p: &Estimated) -> String {

@@ -2,9 +2,9 @@
 
 use super::args::Estimate as Args;
 use super::console::Console;
-use super::estimate::put;
 use super::failure::Failure;
 use super::no_model::Asked;
+use super::stdout;
 use lacuna::digits::number;
 use lacuna::estimate::{LinearEstimate, LinearParameter, Mode, linear_with};
 use lacuna::report::documents;
@@ -16,7 +16,7 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     look.hear_interrupts()?;
     let found = linear_with(&records, order, look)?;
     look.clear();
-    put(&found.system, &args.out, "Written by `lacuna estimate --lti`.")?;
+    stdout::model(&found.system, &args.out, "Written by `lacuna estimate --lti`.")?;
     summarise(&found, look);
     if args.out.as_os_str() != "-" {
         look.say(&format!("Wrote {}", args.out.display()));

@@ -19,6 +19,7 @@ use super::console::{Console, print};
 use super::failure::Failure;
 use super::no_model::Asked;
 use super::outputs::{self, cannot_write};
+use super::stdout;
 use lacuna::data::{Record, Signal};
 use lacuna::fault::{Place, nearest};
 use lacuna::file::{Format, parse, write_text};
@@ -47,7 +48,7 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     };
     // what cannot be loaded helps nobody
     parse(&text, "the new model", Format::Toml)?;
-    let piped = args.out.as_deref().map_or(Ok(false), |out| look.give_stdout_to(out))?;
+    let piped = args.out.as_deref().map_or(Ok(false), |out| stdout::given_to(out, look))?;
     match &args.out {
         Some(path) if !piped => {
             let inputs: Vec<_> = args.data.iter().cloned().collect();

@@ -6,6 +6,7 @@ use super::args::Report as Args;
 use super::console::{Console, print};
 use super::failure::Failure;
 use super::outputs::{self, cannot_write};
+use super::stdout;
 use lacuna::file::write_text;
 use lacuna::report::Page;
 
@@ -45,7 +46,7 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         ))
     })?;
     let path = args.out.clone().unwrap_or_else(|| folder.join(PAGE));
-    if look.give_stdout_to(&path)? {
+    if stdout::given_to(&path, look)? {
         print(&page.html());
         return Ok(0);
     }

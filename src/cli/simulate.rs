@@ -7,6 +7,7 @@ use super::console::{Console, print};
 use super::failure::Failure;
 use super::input;
 use super::outputs;
+use super::stdout;
 use lacuna::data::Record;
 use lacuna::digits::number;
 use lacuna::evaluate::{Metrics, Simulation};
@@ -14,7 +15,7 @@ use lacuna::likelihood::Predictor;
 use lacuna::report::documents;
 
 pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
-    let piped = args.out.as_deref().map_or(Ok(false), |out| look.give_stdout_to(out))?;
+    let piped = args.out.as_deref().map_or(Ok(false), |out| stdout::given_to(out, look))?;
     let out: Vec<_> = args.out.iter().filter(|_| !piped).cloned().collect();
     outputs::check(&[&args.model, &args.data], &out, look)?;
     let (system, want) = input::model(&args.model)?;

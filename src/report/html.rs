@@ -231,8 +231,11 @@ impl Body {
 /// A share as a bar, drawn so that it prints, with its per cent.
 fn bar(value: f64) -> String {
     let width = 90.0 * value.clamp(0.0, 1.0);
-    let text =
-        if value.is_finite() { format!("{:.1}\u{a0}%", 100.0 * value) } else { String::new() };
+    let text = match value {
+        v if !v.is_finite() => String::new(),
+        v if v > 0.0 && v < 5e-4 => "&lt;\u{a0}0.1\u{a0}%".into(),
+        v => format!("{:.1}\u{a0}%", 100.0 * v),
+    };
     format!(
         "<svg class=\"share\" viewBox=\"0 0 90 9\" aria-hidden=\"true\"><rect width=\"{width:.0}\" \
          height=\"9\" rx=\"2\"/></svg>{text}"

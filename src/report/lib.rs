@@ -214,7 +214,10 @@ impl<'a> Report<'a> {
                 "Tested on data that neither fitted nor chose it: {} of {} causes in the machine confirmed, \
                  false discovery rate at most {}.",
                 promise.confirmed, promise.confirmed + promise.not_confirmed.len(),
-                number(promise.rate.max(LEAST_RATE), None),
+                match promise.rate {
+                    rate if rate < LEAST_RATE => "one in a million".into(),
+                    rate => number(rate, None),
+                },
             ));
         }
     }

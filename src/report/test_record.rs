@@ -23,7 +23,7 @@ pub(super) fn section(page: &mut Page, finding: &Finding) {
             continue;
         };
         // an output that the test does not have
-        if before.is_empty() || measured.len() != before.len() {
+        if before.is_empty() || [before.len(), after.len()] != [measured.len(); 2] {
             continue;
         }
         let start = match test.begins.len() {

@@ -166,6 +166,15 @@ test("other laws of a place are drawn when they are asked for, by keys", async (
   }
 });
 
+test("an axis shows the range that was asked for, and no whole decades", async () => {
+  for (const name of ["demo", "long"]) {
+    const page = await open(name);
+    const all = await page.ask(() => [...document.querySelectorAll("figure[data-figure]")].map((f) => [f.dataset.view, f.dataset.range]));
+    for (const [view, drawn] of all) assert.equal(drawn, view, name);
+    await page.close();
+  }
+});
+
 test("no two items of a figure look the same", async () => {
   const page = await open("demo");
   const looks = await page.ask(() => JSON.parse(document.getElementById("figures").textContent).charts.map((chart) =>

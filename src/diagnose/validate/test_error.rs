@@ -76,7 +76,8 @@ impl TestData {
         }
     }
 
-    /// The samples that count with what two models, whose scores these are, make of them.
+    /// The samples that count with what two models, whose scores these are, make of them: those from
+    /// which on both have forgotten their start.
     pub fn series(
         &self,
         system: &System,
@@ -105,6 +106,16 @@ impl TestData {
             }
             for (all, y) in series.measured.iter_mut().zip(&run.measured) {
                 all.extend(y.iter().flat_map(|y| y.iter().skip(from)));
+            }
+        }
+        // a model that forgets its start later counts fewer samples; all end with the record
+        let lengths = series.before.iter().zip(&series.after).map(|(b, a)| b.len().min(a.len()));
+        let both = lengths.filter(|n| *n > 0).min().unwrap_or(count);
+        if let [0] = series.begins[..] {
+            series.skipped += count - both.min(count);
+            let signals = series.inputs.iter_mut().chain(&mut series.measured);
+            for signal in signals.chain(&mut series.before).chain(&mut series.after) {
+                signal.drain(..signal.len().saturating_sub(both));
             }
         }
         Ok(series)

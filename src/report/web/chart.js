@@ -1,7 +1,7 @@
 // One interactive figure: uPlot draws axes and the cursor, draw.js what stands between them.
 
 /** Width of the axis along y, the same for all figures so that linked ones stand in line. */
-const AXIS = { wide: 70, narrow: 52 };
+const AXIS = { wide: 70, narrow: 62 };
 
 class Chart {
   /**
@@ -77,11 +77,13 @@ class Chart {
     const width = Math.max(240, this.plot.clientWidth);
     const narrow = width < 520;
     const font = "12px system-ui, sans-serif";
-    const axis = (label) => ({
+    const height = this.spec.height + (narrow ? -20 : 20);
+    const axis = (label, along) => ({
       label,
       labelSize: 18,
       labelGap: 0,
-      labelFont: "13px system-ui, sans-serif",
+      // a long label on a short axis is set smaller before it is cut off
+      labelFont: `${Math.max(9, Math.min(13, along / (0.56 * label.length))).toFixed(1)}px system-ui, sans-serif`,
       font,
       stroke: colours.ink,
       grid: { stroke: colours.rule, width: 1 },
@@ -94,18 +96,18 @@ class Chart {
     };
     const powers = (u, splits) => splits.map((v) => (v === null ? null : tick(v, v)));
     const names = this.spec.x.names;
-    const x = { ...axis(this.spec.x.label), size: 30 };
+    const x = { ...axis(this.spec.x.label, width), size: 30 };
     if (names?.length) {
       x.splits = () => names.map((_, i) => i + 1);
       x.values = () => names.map((name) => (narrow ? name.slice(0, 9) : name));
     } else x.values = this.logX ? powers : ticks;
-    const y = { ...axis(this.spec.y.label), size: narrow ? AXIS.narrow - 18 : AXIS.wide - 18, gap: 3 };
+    const y = { ...axis(this.spec.y.label, height - 56), size: narrow ? AXIS.narrow - 18 : AXIS.wide - 18, gap: 3 };
     // a low figure has room for more than one number as well
     if (this.spec.height < 160) y.space = 18;
     y.values = this.logY ? powers : ticks;
     const options = {
       width,
-      height: this.spec.height + (narrow ? -20 : 20),
+      height,
       legend: { show: false },
       padding: [8, 18, 0, 0],
       cursor: {
@@ -119,8 +121,9 @@ class Chart {
         sync: this.spec.link ? { key: this.spec.link, setSeries: false, filters: { sub: follows } } : undefined,
       },
       scales: {
-        x: { time: false, distr: this.logX ? 3 : 1, auto: false },
-        y: { distr: this.logY ? 3 : 1, auto: false },
+        // ranges are those that are asked for, not whole decades
+        x: { time: false, distr: this.logX ? 3 : 1, auto: false, range: (u, low, high) => [low, high] },
+        y: { distr: this.logY ? 3 : 1, auto: false, range: (u, low, high) => [low, high] },
       },
       axes: [x, y],
       series: [{}, { show: true, paths: () => null, points: { show: false } }],
@@ -163,6 +166,7 @@ class Chart {
     });
     ctx.restore();
     this.figure.dataset.drawn = "yes";
+    this.figure.dataset.range = `${low} ${high}`;
   }
 
   /** Sets the ranges: the view along x, and along y what is switched on and within it. */
