@@ -106,7 +106,7 @@ test("values stand under the cursor, for the mouse, the keys and the ear", async
   await page.ask(() => document.querySelector("figure .strip").scrollIntoView({ block: "start" }));
   const { over } = named(await page.ask(figures), "y over time");
   await page.mouse("mouseMoved", over.left + over.width / 2, over.top + 20);
-  const values = () => [...document.querySelectorAll("figure:has(.strip) .value")].map((v) => v.textContent);
+  const values = () => [...document.querySelector("figure:has(.strip)").querySelectorAll(".value")].map((v) => v.textContent);
   const read = await page.ask(values);
   assert.equal(read.length, 3);
   assert.ok(read.every((text) => /^\u2212?[0-9.]+/.test(text)), `${read}`);
