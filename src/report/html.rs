@@ -233,7 +233,8 @@ fn bar(value: f64) -> String {
     let width = 90.0 * value.clamp(0.0, 1.0);
     let text = match value {
         v if !v.is_finite() => String::new(),
-        v if v > 0.0 && v < 5e-4 => "&lt;\u{a0}0.1\u{a0}%".into(),
+        // a probability may be too small for a number
+        v if (0.0..5e-4).contains(&v) => "&lt;\u{a0}0.1\u{a0}%".into(),
         v => format!("{:.1}\u{a0}%", 100.0 * v),
     };
     format!(

@@ -16,10 +16,14 @@ mkdirSync(folder, { recursive: true });
 const LOADS = 5;
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
 
-const times = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => done({
-  paint: performance.getEntriesByName("first-contentful-paint")[0]?.startTime ?? NaN,
-  figures: Number(document.documentElement.dataset.ready),
-}))));
+const times = () => new Promise((done) => {
+  const ask = () => {
+    const paint = performance.getEntriesByName("first-contentful-paint")[0];
+    if (!paint) return requestAnimationFrame(ask);
+    done({ paint: paint.startTime, figures: Number(document.documentElement.dataset.ready) });
+  };
+  ask();
+});
 
 const browser = await Browser.start();
 try {

@@ -86,8 +86,6 @@ pub(crate) fn false_discovery(causes: &[Cause]) -> Option<FalseDiscovery> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use rand::{RngExt, SeedableRng};
 
     use super::*;
