@@ -6,6 +6,8 @@ use lacuna::file::{self, Format};
 use lacuna::report::Report;
 use lacuna::system::System;
 
+mod test_record;
+
 const MODEL: &str = include_str!("../src/cli/demo/model.toml");
 
 fn system(more: &str) -> System {
@@ -113,7 +115,7 @@ fn stands_alone(html: &str) {
         assert!(at.is_none(), "{word}: {:?}", at.map(|i| &without_namespace[i..][..40]));
     }
     assert!(html.starts_with("<!DOCTYPE html>") && html.contains("charset=\"utf-8\""));
-    assert!(html.len() < 400_000, "{} bytes", html.len());
+    assert!(html.len() < 450_000, "{} bytes", html.len());
 }
 
 #[test]
@@ -127,6 +129,7 @@ fn every_section_of_a_finding() {
     for head in [
         "coulomb_friction into force_1 of v_1",
         "y: measured and simulated",
+        "y on the test record",
         "Figures",
         "If parameters are treated otherwise",
         "First look at all candidates",
@@ -135,9 +138,10 @@ fn every_section_of_a_finding() {
     ] {
         assert!(heads.contains(&head), "no section `{head}` among {heads:?}");
     }
-    // the force against the speed, signal, residual, input, spectrum, two correlations
-    assert_eq!(elements.iter().filter(|name| *name == "figure").count(), 7);
-    assert_eq!(html.matches("<div class=\"still\"><svg").count(), 7);
+    // the force against the speed, signal, residual, input, spectrum, two correlations; signal,
+    // residual and input of the test record
+    assert_eq!(elements.iter().filter(|name| *name == "figure").count(), 10);
+    assert_eq!(html.matches("<div class=\"still\"><svg").count(), 10);
     for words in [
         "Spectrum of the residual of y",
         "noise floor",
@@ -159,6 +163,57 @@ fn every_section_of_a_finding() {
     }
     // the same finding makes the same bytes
     assert_eq!(html, Report::of(&finding).titled("two masses").html());
+}
+
+#[test]
+fn other_laws_of_the_place_are_there_to_be_drawn() {
+    let finding = finding(&system(""));
+    let curve = &finding.series.curves[0];
+    assert!(!curve.others.is_empty(), "no other law");
+    // what speaks for the law that was named: no other one comes as near to the free curve
+    let off = |law: &[(f64, f64)]| -> f64 {
+        let at = |z: f64| law.iter().min_by(|a, b| (a.0 - z).abs().total_cmp(&(b.0 - z).abs()));
+        curve.knots.iter().map(|k| ((at(k.0).unwrap().1 - k.1) / k.2).powi(2)).sum()
+    };
+    let named = off(&curve.law);
+    for other in &curve.others {
+        assert_eq!(other.law.len(), curve.law.len());
+        let unlikely = other.probability < 0.01;
+        assert!(!unlikely || off(&other.law) > named, "{:?}: {}", other.effects, off(&other.law));
+    }
+    // the band is about the law, and as wide as the level's error where the law is its level
+    let (level, error) =
+        (finding.causes[0].parameters[0].value, finding.causes[0].parameters[0].std_error);
+    let end = curve.band.last().unwrap();
+    assert!((0.5 * (end.1 + end.2) - curve.law.last().unwrap().1).abs() < 1e-9);
+    let half = 0.5 * (end.2 - end.1);
+    assert!((half / (1.96 * error.unwrap()) - 1.0).abs() < 0.05, "{half} about {level}");
+    // none of them is drawn before it is asked for, and all of them are in the page
+    let html = Report::of(&finding).html();
+    for other in &curve.others {
+        let label = format!("\"label\":\"{} (", other.effects.join(" + "));
+        let at = html.find(&label).unwrap_or_else(|| panic!("no {label}"));
+        assert!(html[at..at + 120].contains("\"off\":true"), "{}", &html[at..at + 120]);
+    }
+}
+
+#[test]
+fn no_alternative_is_without_a_probability_or_a_reason() {
+    let finding = finding(&system(""));
+    let mut count = 0;
+    for cause in &finding.causes {
+        for other in cause.indistinguishable.iter().chain(&cause.runners_up) {
+            assert!(other.probability.is_some() != other.unweighed.is_some(), "{other}");
+            count += 1;
+        }
+    }
+    assert!(count > 3, "{count} alternatives");
+    let html = Report::of(&finding).html();
+    let rows = html.split("data-name=\"probability\">").skip(1);
+    assert!(rows.clone().count() > count);
+    for cell in rows {
+        assert!(!cell.starts_with("</td>"), "a blank probability");
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 """The native half: users see it through the other modules of the package."""
 
 import os
+from pathlib import Path
 from typing import Any, Dict, List, Optional, Tuple, Union
 
 import numpy as np
@@ -32,6 +33,7 @@ class Model:
     def signals(self) -> str: ...
     def to_toml(self) -> str: ...
     def save(self, path: Union[str, "os.PathLike[str]"], header: List[str]) -> None: ...
+    def export(self, folder: Union[str, "os.PathLike[str]"], to: str, name: str) -> Tuple[List[Path], List[str]]: ...
 
 class Table:
     source: str

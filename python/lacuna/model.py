@@ -5,7 +5,9 @@ from __future__ import annotations
 import html
 import json
 import os
-from typing import Any, Callable, Dict, Mapping, Optional, Tuple, Union
+import warnings
+from pathlib import Path
+from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Union
 
 from . import law
 from ._lacuna import CallError
@@ -13,6 +15,7 @@ from ._lacuna import Model as Native
 from ._lacuna import demo as _demo
 from .record import Record
 from .result import Fields
+from .work import Remark
 
 #: What every function takes for a model.
 ModelLike = Union["Model", str, "os.PathLike[str]", Mapping[str, Any]]
@@ -157,6 +160,29 @@ class Model:
     def save(self, path: Union[str, "os.PathLike[str]"]) -> None:
         """Writes its model file."""
         self._native.save(path, ["Written by lacuna from Python."])
+
+    def export(
+        self, folder: Union[str, "os.PathLike[str]"], to: str = "fmu", name: str = "model"
+    ) -> List[Path]:
+        """Writes the model, its effects included, as a program that needs no lacuna.
+
+        Parameters
+        ----------
+        folder
+            Where the files go; it is made, and files of the same names are replaced.
+        to
+            ``"fmu"`` (FMI 2.0 and 3.0, co-simulation), ``"c"`` (C99), ``"matlab"`` or ``"python"``;
+            each but the first with a test that it is the same simulation.
+        name
+            Name of functions and files: letters, digits and underscores, a letter first.
+
+        Gives the paths. What holds of the exported model alone is a warning (:class:`Remark`). Units for
+        ``"fmu"`` hold a binary where a C compiler is installed, and always the source.
+        """
+        files, remarks = self._native.export(folder, to, name)
+        for remark in remarks:
+            warnings.warn(remark, Remark, stacklevel=2)
+        return list(files)
 
     def simulate(self, record: Any, **settings: Any) -> Any:
         """As :func:`lacuna.simulate`."""

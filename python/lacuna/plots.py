@@ -82,6 +82,8 @@ def diagnosis(given: "result.Diagnosis", ax: Any = None) -> Any:
     z, w, error = arrays["free z:0"], arrays["free w:0"], arrays["free std:0"]
     if len(z):
         law.errorbar(z, w, yerr=1.96 * error, color=MEASURED, fmt="o", markersize=3, label="from the data")
+    if len(arrays["band low:0"]):
+        law.fill_between(arrays["law z:0"], arrays["band low:0"], arrays["band high:0"], color=AFTER, alpha=0.2)
     law.plot(arrays["law z:0"], arrays["law w:0"], color=AFTER, label=given.causes[0].effect)
     law.set_xlabel(given.causes[0].of or "")
     law.set_ylabel(given.causes[0].into)

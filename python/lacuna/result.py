@@ -217,6 +217,16 @@ class Diagnosis(Result):
                 found.setdefault(name, {})[what] = values
         return found
 
+    @property
+    def test_series(self) -> Dict[str, Dict[str, Any]]:
+        """The same on the test record, or on the part that was kept for the test: nothing was fitted to it."""
+        found: Dict[str, Dict[str, Any]] = {}
+        for key, values in self._arrays.items():
+            what, _, name = key.partition(":")
+            if what.startswith("test ") and len(values):
+                found.setdefault(name, {})[what[len("test ") :]] = values
+        return found
+
     def __str__(self) -> str:
         return "\n".join([self.headline, *self.details])
 

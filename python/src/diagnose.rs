@@ -134,6 +134,19 @@ fn series(finding: &Finding) -> BTreeMap<String, Vec<f64>> {
         put("free z", curve.knots.iter().map(|p| p.0).collect());
         put("free w", curve.knots.iter().map(|p| p.1).collect());
         put("free std", curve.knots.iter().map(|p| p.2).collect());
+        put("band low", curve.band.iter().map(|p| p.1).collect());
+        put("band high", curve.band.iter().map(|p| p.2).collect());
+    }
+    let test = &from.test;
+    let groups = [
+        ("test measured", &test.measured),
+        ("test before", &test.before),
+        ("test after", &test.after),
+    ];
+    for (what, values) in groups {
+        for ((name, _), values) in from.outputs.iter().zip(values) {
+            arrays.insert(format!("{what}:{name}"), values.clone());
+        }
     }
     arrays
 }

@@ -80,6 +80,7 @@ explained!(
     lacuna::likelihood::LikelihoodError,
     lacuna::estimate::LinearError,
     lacuna::system::SystemError,
+    lacuna::export::ExportError,
     lacuna::diagnose::DiagnoseError,
     lacuna::lfr::LfrError,
     lacuna::train::TrainError

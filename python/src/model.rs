@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use lacuna::data::Table as Columns;
 use lacuna::evaluate::want;
+use lacuna::export::{Target, export};
 use lacuna::file::{Format, load, parse, save_with, to_toml};
 use lacuna::model::Signal;
 use lacuna::system::{Sampling, System};
@@ -118,6 +119,31 @@ impl Model {
     fn save(&self, path: PathBuf, header: Vec<String>) -> PyResult<()> {
         self.in_a_file()?;
         Ok(save_with(&self.system, &path, &header).map_err(Failure::from)?)
+    }
+
+    /// Writes it as source text of another program into a folder; gives the files and what a user
+    /// should know.
+    fn export(
+        &self,
+        py: Python<'_>,
+        folder: PathBuf,
+        to: &str,
+        name: &str,
+    ) -> PyResult<(Vec<PathBuf>, Vec<String>)> {
+        self.in_a_file()?;
+        let target = match to {
+            "c" => Target::C,
+            "fmu" => Target::Fmu,
+            "matlab" => Target::Matlab,
+            "python" => Target::Python,
+            other => {
+                let message = format!("to=`{other}`: there are c, fmu, matlab, python");
+                return Err(Failure::call(message).into());
+            }
+        };
+        let written = py.detach(|| export(&self.system, target, name, &folder));
+        let written = written.map_err(Failure::from)?;
+        Ok((written.files, written.remarks))
     }
 }
 

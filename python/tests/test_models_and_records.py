@@ -1,5 +1,8 @@
 """Models and records, of everything that they can be made of."""
 
+import subprocess
+import sys
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -23,6 +26,29 @@ def test_a_model_of_a_file_a_text_and_a_dictionary(tmp_path):
     of_text.save(tmp_path / "saved.toml")
     assert lacuna.Model.from_file(tmp_path / "saved.toml").parameters == of_text.parameters
     assert "torque -> angle" in repr(of_text) and "<table>" in of_text._repr_html_()
+
+
+def test_a_model_is_exported(tmp_path, swing):
+    duffing = {"mass": 1.0, "damping": 0.5, "stiffness": 90.0, "hardening": 9.0}
+    model = lacuna.Model.from_dict({"sampling_time": 0.01, "model": {"duffing": duffing}})
+    for to, expected in [
+        ("c", {"spring.c", "spring.h", "main_test.c", "test_vector.h"}),
+        ("fmu", {"spring_fmi2.fmu", "spring_fmi3.fmu"}),
+        ("matlab", {"spring.m", "test_spring.m", "test_vector.csv"}),
+        ("python", {"spring.py", "test_spring.py", "test_vector.csv"}),
+    ]:
+        written = model.export(tmp_path / to, to, name="spring")
+        assert {path.name for path in written} == expected and all(path.is_file() for path in written)
+    # what was written is the same simulation
+    done = subprocess.run([sys.executable, "test_spring.py"], cwd=tmp_path / "python", capture_output=True, text=True)
+    assert done.stdout == "equal to the simulation\n", done.stderr
+    with pytest.raises(lacuna.CallError, match="there are c, fmu, matlab, python"):
+        model.export(tmp_path, "simulink")
+    with pytest.raises(lacuna.Error, match="sampling time"):
+        lacuna.Model.from_toml(PENDULUM).export(tmp_path)
+    # with the effects that were found
+    found = lacuna.diagnose(lacuna.Model.from_toml(PENDULUM), swing, only=["coulomb_friction"])
+    assert len(found.extended.export(tmp_path / "found")) == 2
 
 
 def test_a_wrong_model_says_where():

@@ -9,6 +9,7 @@ import textwrap
 import time
 
 import matplotlib
+import numpy as np
 import pytest
 
 import lacuna
@@ -49,6 +50,10 @@ def test_series_are_arrays(results):
     series = found.series["angle"]
     assert set(series) == {"measured", "before", "after"}
     assert series["after"].shape == found.time.shape
+    test = found.test_series["angle"]
+    assert set(test) == {"measured", "before", "after"}
+    off = test["measured"] - test["after"]
+    assert np.sqrt(np.mean(off**2)) == pytest.approx(found.after.test.angle.rmse)
     assert "Dry friction" in str(found) and found.page.startswith("<!")
 
 

@@ -5,6 +5,7 @@ mod diagnose;
 mod estimate;
 mod exam;
 mod export;
+mod folder;
 pub mod help;
 mod look;
 mod man;
@@ -215,7 +216,7 @@ pub struct ModelAndData {
 #[derive(Debug, Clone, Arguments)]
 pub struct Demo {
     /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = folder::folder())]
     pub out: PathBuf,
     /// Simulates what was found so many times, diagnoses each, and says how often such a record
     /// would mislead [default: not at all]
@@ -260,7 +261,7 @@ pub struct Fit {
     #[arg(long, value_name = "FILE")]
     pub config: PathBuf,
     /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = folder::folder())]
     pub out: PathBuf,
 }
 
@@ -278,7 +279,7 @@ pub struct Check {
     #[command(flatten)]
     pub on: ModelAndData,
     /// Probability of rejecting a model that is right
-    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = estimate::probability)]
     pub level: f64,
 }
 
@@ -288,13 +289,6 @@ pub struct Generate {
     #[arg(long, value_name = "FILE")]
     pub config: PathBuf,
     /// Folder for the records
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = folder::folder())]
     pub out: PathBuf,
-}
-
-fn probability(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(level) if level > 0.0 && level < 1.0 => Ok(level),
-        _ => Err("a number between 0 and 1 is needed".into()),
-    }
 }

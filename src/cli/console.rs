@@ -29,6 +29,8 @@ pub struct Console {
     /// Whether files that lacuna did not write may be replaced.
     pub force: bool,
     quiet: bool,
+    /// Whether a file goes to stdout, so that words stand aside.
+    taken: AtomicBool,
     /// Every step is to be told in a line of its own.
     verbose: bool,
     course: Mutex<Course>,
@@ -90,6 +92,7 @@ impl Console {
             json,
             force: common.force,
             quiet,
+            taken: AtomicBool::new(false),
             verbose,
             course,
             lively,
@@ -105,8 +108,16 @@ impl Console {
         }
     }
 
+    /// Whether a file goes to stdout: words then go to stderr.
+    pub fn stand_aside(&self, aside: bool) {
+        self.taken.store(aside, Ordering::Relaxed);
+    }
+
     /// The result for people: on stdout, also when quiet, unless a program listens.
     pub fn result(&self, text: &str) {
+        if self.taken.load(Ordering::Relaxed) {
+            return self.say(text);
+        }
         if !self.json {
             self.bar.suspend(|| print(&format!("{}\n", harmless(text))));
         }
@@ -128,6 +139,9 @@ impl Console {
 
     /// The sentence that matters.
     pub fn headline(&self, text: &str) {
+        if self.taken.load(Ordering::Relaxed) {
+            return self.say(text);
+        }
         let bold = std::io::stdout().is_terminal() && !no_color();
         let text = harmless(text);
         let text = if bold { format!("\x1b[1m{text}\x1b[0m") } else { text.into_owned() };

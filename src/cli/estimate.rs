@@ -5,10 +5,11 @@ use super::console::Console;
 use super::failure::Failure;
 use super::input;
 use super::outputs;
+use super::stdout;
 use lacuna::diagnose::Diagnosis;
 use lacuna::digits::number;
 use lacuna::estimate::{Estimated, estimate_by, estimate_with};
-use lacuna::file::{Document, Format, save_with};
+use lacuna::file::{Document, Format};
 use lacuna::optimise::Named;
 use lacuna::report::{documents, sentences};
 
@@ -16,10 +17,13 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     outputs::distinct(&args.data, &[])?;
     let mut inputs = outputs::paths(&[&args.data]);
     inputs.extend(args.model.as_deref());
-    outputs::check(&inputs, std::slice::from_ref(&args.out), look)?;
+    let piped = stdout::given_to(&args.out, look)?;
+    if !piped {
+        outputs::check(&inputs, std::slice::from_ref(&args.out), look)?;
+        input::writable(&args.out)?;
+    }
     let Some(model) = &args.model else { return super::linear::run(args, look) };
     let (system, want) = input::model(model)?;
-    input::writable(&args.out)?;
     let records = input::records(&args.data, &want, &args.columns, look)?;
     look.hear_interrupts()?;
     // what cannot be simulated with its present values yet is fitted to the records as they are
@@ -36,7 +40,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
         }
     };
     look.clear();
-    save_with(&estimate.system, &args.out, &["Written by `lacuna estimate`.".into()])?;
+    stdout::model(&estimate.system, &args.out, "Written by `lacuna estimate`.")?;
     for parameter in &estimate.parameters {
         look.result(&line(parameter));
     }
@@ -51,7 +55,9 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     }
     let (before, after) = estimate.nrmse;
     look.result(&format!("NRMSE {before:.4} before, {after:.4} after"));
-    look.say(&format!("Wrote {}", args.out.display()));
+    if !piped {
+        look.say(&format!("Wrote {}", args.out.display()));
+    }
     let file = args.out.display().to_string();
     let document = documents::estimated(&estimate, Some(&file), &faults);
     look.document(&document.map_err(Failure::unwritable)?);

@@ -6,7 +6,8 @@ use super::args::{Export, ExportTo};
 use super::console::Console;
 use super::failure::Failure;
 use super::input;
-use lacuna::export::{Target, export};
+use super::outputs;
+use lacuna::export::{Target, sources};
 
 pub fn run(args: &Export, look: &Console) -> Result<u8, Failure> {
     let (system, _) = input::model(&args.model)?;
@@ -16,7 +17,9 @@ pub fn run(args: &Export, look: &Console) -> Result<u8, Failure> {
         ExportTo::Matlab => Target::Matlab,
         ExportTo::Python => Target::Python,
     };
-    let written = export(&system, target, &args.name, &args.out)?;
+    let sources = sources(&system, target, &args.name)?;
+    outputs::check(&[&args.model], &outputs::within(&args.out, &sources.names()), look)?;
+    let written = sources.write(&args.out)?;
     for remark in &written.remarks {
         look.say(remark);
     }

@@ -13,6 +13,12 @@ use lacuna::system::System;
 
 /// A system and what it wants of a record.
 pub fn model(path: &Path) -> Result<(System, Want), Failure> {
+    if path == Path::new("-") {
+        let place = Place { key: Some("--model".into()), ..Place::default() };
+        let message = "a model is not read from standard input";
+        let hint = "give --model a file; --data may be -";
+        return Err(Failure::call_refused(message.into(), place, hint.into()));
+    }
     let system = load(path)?;
     let want = want(&system)?;
     Ok((system, want))

@@ -30,6 +30,7 @@ mod provenance;
 mod reference;
 mod reported;
 mod simulate;
+mod stdout;
 mod study;
 
 use std::process::ExitCode;

@@ -3,24 +3,24 @@
 use super::args::Estimate as Args;
 use super::console::Console;
 use super::failure::Failure;
-use super::input;
 use super::no_model::Asked;
+use super::stdout;
 use lacuna::digits::number;
 use lacuna::estimate::{LinearEstimate, LinearParameter, Mode, linear_with};
-use lacuna::file::save_with;
 use lacuna::report::documents;
 
 pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
-    input::writable(&args.out)?;
     let order = args.lti.flatten();
     let asked = Asked { columns: &args.columns, step: args.sampling_time, order };
     let records = asked.records(&args.data, look)?;
     look.hear_interrupts()?;
     let found = linear_with(&records, order, look)?;
     look.clear();
-    save_with(&found.system, &args.out, &["Written by `lacuna estimate --lti`.".into()])?;
+    stdout::model(&found.system, &args.out, "Written by `lacuna estimate --lti`.")?;
     summarise(&found, look);
-    look.say(&format!("Wrote {}", args.out.display()));
+    if args.out.as_os_str() != "-" {
+        look.say(&format!("Wrote {}", args.out.display()));
+    }
     let file = args.out.display().to_string();
     look.document(&documents::linear(&found, Some(&file)));
     Ok(0)

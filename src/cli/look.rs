@@ -29,6 +29,15 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         for table in input::tables(path)? {
             let (record, remarks) = asked.record_to_look_at(table)?;
             input::say_remarks(path, &remarks, look);
+            if record.inputs.is_empty() {
+                let named: Vec<&str> = record.outputs.iter().map(|s| &s.name[..]).collect();
+                look.say(&format!(
+                    "{}: no column is known to drive the machine, so delays, coherence and excitation are \
+                     not looked for; name it by --inputs, of: {}",
+                    path.display(),
+                    named.join(", ")
+                ));
+            }
             pages.push(if pages.is_empty() {
                 PAGE.into()
             } else {

@@ -19,6 +19,7 @@ use super::console::{Console, print};
 use super::failure::Failure;
 use super::no_model::Asked;
 use super::outputs::{self, cannot_write};
+use super::stdout;
 use lacuna::data::{Record, Signal};
 use lacuna::fault::{Place, nearest};
 use lacuna::file::{Format, parse, write_text};
@@ -47,15 +48,16 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     };
     // what cannot be loaded helps nobody
     parse(&text, "the new model", Format::Toml)?;
+    let piped = args.out.as_deref().map_or(Ok(false), |out| stdout::given_to(out, look))?;
     match &args.out {
-        Some(path) => {
+        Some(path) if !piped => {
             let inputs: Vec<_> = args.data.iter().cloned().collect();
             outputs::check(&outputs::paths(&[&inputs]), std::slice::from_ref(path), look)?;
             write_text(path, &text).map_err(|error| cannot_write(path, &error))?;
             look.introduce(&format!("Wrote {}", path.display()));
         }
-        None if !look.json => print(&text),
-        None => {}
+        _ if !look.json => print(&text),
+        _ => {}
     }
     look.document(&json!({ "schema": 1, "model": text, "written": args.out }));
     Ok(0)

@@ -7,8 +7,8 @@
 //! any other existing file                          refused without --force
 //! ```
 //!
-//! Who wrote a file is read off the file: pages name their generator, model files say in their
-//! first lines which command wrote them, JSON documents have the keys that lacuna gives them,
+//! Who wrote a file is read off the file: pages name their generator, model files and exported sources
+//! say in their first lines which command wrote them, exported units in their comment, JSON documents have the keys that lacuna gives them,
 //! tables its columns; a generated record has the checksum that `truth.json` beside it states.
 
 use std::collections::BTreeMap;
@@ -21,6 +21,7 @@ use serde_json::Value;
 
 use super::console::Console;
 use super::failure::Failure;
+use lacuna::export::WRITTEN_BY;
 use lacuna::fault::Place;
 
 /// Bytes at a file's beginning in which it says who wrote it.
@@ -119,9 +120,10 @@ fn refused(message: String, option: &str, hint: String) -> Failure {
     Failure::call_refused(message, place, hint)
 }
 
-/// Whether two paths are one file, by whatever links and names.
+/// Whether two paths are one file, by whatever links and names, or both stdin.
 fn same(a: &Path, b: &Path) -> bool {
-    same_file::is_same_file(a, b).unwrap_or(false)
+    let both_stdin = a == b && a.as_os_str() == "-";
+    both_stdin || same_file::is_same_file(a, b).unwrap_or(false)
 }
 
 /// Whether nothing is lost where a path is written to.
@@ -151,6 +153,8 @@ fn ours(path: &Path) -> bool {
             head(path).is_some_and(|text| text.contains("name=\"generator\" content=\"lacuna"))
         }
         "json" => is_document(path) || has_our_header(path),
+        "c" | "h" | "m" | "py" => head(path).is_some_and(|text| text.contains("`lacuna ")),
+        "fmu" => ends_as_ours(path),
         _ if is_table(path) => is_our_table(path) || is_generated(path),
         _ => has_our_header(path),
     }
@@ -199,7 +203,14 @@ fn is_our_table(path: &Path) -> bool {
     };
     let mut columns = names.split(',').map(name).filter(|name| name != "time").peekable();
     let simulated = columns.peek().is_some() && columns.all(|name| name.ends_with("_hat"));
-    simulated || TABLES.iter().any(|table| names.starts_with(table))
+    let mut columns = names.split(',').map(|field| field.trim_start_matches('"'));
+    let vector = columns.all(|name| name.starts_with("input ") || name.starts_with("output "));
+    simulated || vector || TABLES.iter().any(|table| names.starts_with(table))
+}
+
+/// Whether an exported unit says at its end, where an archive has its comment, who wrote it.
+fn ends_as_ours(path: &Path) -> bool {
+    std::fs::read(path).is_ok_and(|bytes| bytes.ends_with(WRITTEN_BY.as_bytes()))
 }
 
 /// Whether a record is, byte by byte, the one that `truth.json` beside it speaks of.

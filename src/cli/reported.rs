@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::args::Report as Args;
-use super::console::Console;
+use super::console::{Console, print};
 use super::failure::Failure;
 use super::outputs::{self, cannot_write};
+use super::stdout;
 use lacuna::file::write_text;
 use lacuna::report::Page;
 
@@ -45,6 +46,10 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
         ))
     })?;
     let path = args.out.clone().unwrap_or_else(|| folder.join(PAGE));
+    if stdout::given_to(&path, look)? {
+        print(&page.html());
+        return Ok(0);
+    }
     outputs::check(&[&stored], std::slice::from_ref(&path), look)?;
     put(&path, &page.html())?;
     look.result(&format!("Wrote {}", path.display()));

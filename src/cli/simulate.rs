@@ -1,7 +1,5 @@
 //! `lacuna simulate`.
 
-use std::path::Path;
-
 use serde_json::json;
 
 use super::args::Simulate;
@@ -9,22 +7,16 @@ use super::console::{Console, print};
 use super::failure::Failure;
 use super::input;
 use super::outputs;
+use super::stdout;
 use lacuna::data::Record;
 use lacuna::digits::number;
 use lacuna::evaluate::{Metrics, Simulation};
-use lacuna::fault::Place;
 use lacuna::likelihood::Predictor;
 use lacuna::report::documents;
 
 pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
-    if args.out.as_deref() == Some(Path::new("-")) && look.json {
-        return Err(Failure::input(
-            "--out - and --json both want stdout".into(),
-            Place { key: Some("--out".into()), ..Place::default() },
-            "write the record into a file: --out simulated.csv".into(),
-        ));
-    }
-    let out: Vec<_> = args.out.iter().filter(|out| out.as_os_str() != "-").cloned().collect();
+    let piped = args.out.as_deref().map_or(Ok(false), |out| stdout::given_to(out, look))?;
+    let out: Vec<_> = args.out.iter().filter(|_| !piped).cloned().collect();
     outputs::check(&[&args.model, &args.data], &out, look)?;
     let (system, want) = input::model(&args.model)?;
     let record = input::record_to_simulate(&args.data, &want, &args.columns, look)?;
@@ -32,9 +24,6 @@ pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
         None => Simulation::of(&system, &record, input::init(args.init))?,
         Some(horizon) => Predictor::predict(&system, &record, horizon as usize)?,
     };
-    // the record goes to stdout, and words to stderr: one of both can be piped
-    let piped = args.out.as_deref() == Some(Path::new("-"));
-    let told = |text: &str| if piped { look.say(text) } else { look.result(text) };
     match &args.out {
         Some(_) if piped => {
             let mut text = Vec::new();
@@ -47,10 +36,10 @@ pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
     for (name, metrics) in &run.metrics {
         let unit = want.outputs.iter().find(|(n, _)| n == name).map_or("", |(_, unit)| unit);
         let ahead = args.horizon.map_or_else(String::new, |k| format!("{k} ahead: "));
-        told(&format!("{name}: {ahead}{}", sentence(metrics, unit)));
+        look.result(&format!("{name}: {ahead}{}", sentence(metrics, unit)));
     }
     if let Some(sample) = run.diverged_at {
-        told(&format!(
+        look.result(&format!(
             "The simulation diverges at sample {sample} (t = {} s).",
             number(record.time(sample), None)
         ));

@@ -34,17 +34,18 @@ pub use error::DiagnoseError;
 pub use findings::active_range::ActsWhere;
 pub use findings::cause::{
     Alternative, Cause, ColumnFault, ExplainedBy, FoundShape, LawPart, MissingForce, Onset, Site,
-    Value, Withdrawn, Wording,
+    Unweighed, Value, Withdrawn, Wording,
 };
 pub use findings::closed_loop::ClosedLoop;
 pub use findings::distortion::{AtLines, Distortion, distortion};
 pub use findings::error_band::Regime;
 pub use findings::finding::{
-    Curve, FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores,
-    Series, SingleRecord, Verdict,
+    FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores,
+    SingleRecord, Verdict,
 };
 pub use findings::note::{Disturbance, Disturbs, Note};
 pub use findings::per_record::InRecord;
+pub use findings::series::{Curve, OtherLaw, Series, TestSeries};
 pub use fit::hypothesis::{Moved, Track};
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
 pub use validate::goodness_of_fit::GoodnessOfFit;

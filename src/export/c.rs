@@ -85,7 +85,7 @@ pub fn header(model: &Model<'_>) -> String {
     let listing = Listing::of(step);
     let lines = step.tape.lines();
     let mut text = format!(
-        "/* {name}: one sample of {} s per step. Written by lacuna. */\n\
+        "/* {name}: one sample of {} s per step. Written by `lacuna export`. */\n\
          #ifndef {upper}_H\n#define {upper}_H\n\n",
         step.sampling_time
     );
@@ -162,7 +162,9 @@ pub fn source(model: &Model<'_>) -> String {
     let upper = name.to_uppercase();
     let listing = Listing::of(step);
     let lines = step.tape.lines();
-    let mut text = format!("#include \"{name}.h\"\n\n#include <math.h>\n\n");
+    let mut text = format!(
+        "/* Written by `lacuna export`. */\n#include \"{name}.h\"\n\n#include <math.h>\n\n"
+    );
     if listing.calls(Binary::Min) {
         text += "static double smaller(double a, double b) { return b < a || b != b ? b : a; }\n";
     }

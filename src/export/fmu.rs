@@ -11,7 +11,7 @@ use std::process::Command;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use crate::{ExportError, Files, Model, c};
+use crate::{ExportError, Files, Model, WRITTEN_BY, c};
 
 /// One variable of a unit.
 struct Variable {
@@ -178,6 +178,8 @@ fn binary(
 fn zipped(content: &[(String, Vec<u8>)]) -> Vec<u8> {
     let mut zip = ZipWriter::new(Cursor::new(vec![]));
     let options = SimpleFileOptions::default();
+    // by which the program knows that it may replace the file
+    let _ = zip.set_comment(WRITTEN_BY);
     for (name, bytes) in content {
         // writing into memory does not fail below the size of a zip file, 4 GiB
         let _ = zip.start_file(name.as_str(), options).map(|()| zip.write_all(bytes));

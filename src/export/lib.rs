@@ -49,6 +49,10 @@ pub struct Written {
     pub remarks: Vec<String>,
 }
 
+/// The comment of an exported unit's archive.
+#[doc(hidden)]
+pub const WRITTEN_BY: &str = "Written by `lacuna export`.";
+
 /// Files by name, before they are written.
 type Files = Vec<(String, Vec<u8>)>;
 
@@ -57,6 +61,41 @@ struct Model<'a> {
     name: &'a str,
     step: &'a Recorded,
     vector: &'a Vector,
+}
+
+/// An exported system in memory.
+#[doc(hidden)]
+#[derive(Debug, Clone)]
+pub struct Sources {
+    files: Files,
+    remarks: Vec<String>,
+}
+
+impl Sources {
+    /// Names of the files.
+    pub fn names(&self) -> Vec<&str> {
+        self.files.iter().map(|(name, _)| name.as_str()).collect()
+    }
+
+    /// Writes the files into a folder, which is made where there is none.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be written.
+    pub fn write(self, folder: &Path) -> Result<Written, ExportError> {
+        let cannot = |path: &Path, error: std::io::Error| ExportError::Write {
+            file: path.display().to_string(),
+            reason: error.to_string(),
+        };
+        std::fs::create_dir_all(folder).map_err(|error| cannot(folder, error))?;
+        let mut written = vec![];
+        for (file, content) in self.files {
+            let path = folder.join(file);
+            std::fs::write(&path, content).map_err(|error| cannot(&path, error))?;
+            written.push(path);
+        }
+        Ok(Written { files: written, remarks: self.remarks })
+    }
 }
 
 /// Writes a system into a folder, which is made where there is none.
@@ -90,6 +129,16 @@ pub fn export(
     name: &str,
     folder: &Path,
 ) -> Result<Written, ExportError> {
+    sources(system, target, name)?.write(folder)
+}
+
+/// What [`export`] writes, before it is written.
+///
+/// # Errors
+///
+/// As [`export`], but for files.
+#[doc(hidden)]
+pub fn sources(system: &System, target: Target, name: &str) -> Result<Sources, ExportError> {
     if !names::is_usable(name) {
         return Err(ExportError::Name(name.into()));
     }
@@ -110,16 +159,5 @@ pub fn export(
         Target::Matlab => matlab::files(&model),
         Target::Fmu => fmu::files(&model, &mut remarks)?,
     };
-    let cannot = |path: &Path, error: std::io::Error| ExportError::Write {
-        file: path.display().to_string(),
-        reason: error.to_string(),
-    };
-    std::fs::create_dir_all(folder).map_err(|error| cannot(folder, error))?;
-    let mut written = vec![];
-    for (file, content) in files {
-        let path = folder.join(file);
-        std::fs::write(&path, content).map_err(|error| cannot(&path, error))?;
-        written.push(path);
-    }
-    Ok(Written { files: written, remarks })
+    Ok(Sources { files, remarks })
 }

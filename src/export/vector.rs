@@ -71,9 +71,11 @@ impl Vector {
     /// As CSV.
     pub(crate) fn csv(&self, model: &crate::Model<'_>) -> String {
         let step = model.step;
-        let signals = step.inputs.iter().chain(&step.output_signals);
-        let quoted = |name: &str| format!("\"{}\"", name.replace('"', "\"\""));
-        let mut text = signals.map(|s| quoted(&s.name)).collect::<Vec<_>>().join(",") + "\n";
+        let inputs = step.inputs.iter().map(|s| ("input", &s.name));
+        let signals = inputs.chain(step.output_signals.iter().map(|s| ("output", &s.name)));
+        let quoted =
+            |(what, name): (&str, &String)| format!("\"{what} {}\"", name.replace('"', "\"\""));
+        let mut text = signals.map(quoted).collect::<Vec<_>>().join(",") + "\n";
         for row in self.rows() {
             let cells: Vec<String> = row.iter().map(|value| format!("{value:?}")).collect();
             text += &(cells.join(",") + "\n");

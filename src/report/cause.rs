@@ -1,11 +1,11 @@
 //! One cause: its curve, its numbers, what looks like it.
 
-use super::figure::{Figure, Role};
+use super::figure::{Figure, OTHERS, Role};
 use super::page::{Cell, Page, share};
 use super::parameters::interval;
 use super::sentences;
-use crate::diagnose::{Alternative, Cause, Curve, Finding, InRecord};
-use crate::digits::number;
+use crate::diagnose::{Alternative, Cause, Curve, Finding, InRecord, OtherLaw};
+use crate::digits::{number, percent};
 
 /// The section of what no cause was found for: the curve that comes nearest to it.
 pub fn unexplained(page: &mut Page, finding: &Finding) {
@@ -40,7 +40,17 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
         }
         page.element("p", "note",
             "What the model lacks against the coordinate: dots are estimated from the record \
-             without assuming a shape (bars: two standard errors), the line is the law that was named.");
+             without assuming a shape (bars: two standard errors; a straight line from dot to dot, so that \
+             those beside a jump overshoot it), the line is the law that was named, in its 95 % band.");
+        if !curve.others.is_empty() {
+            page.element(
+                "p",
+                "note",
+                "Other laws of this place, with the numbers that fit best, are drawn beside it by the buttons \
+                 above the picture; in per cent their probabilities. Where one of them leaves the dots, the \
+                 record speaks against it; where it does not, the table says how it compares.",
+            );
+        }
     }
     let rows: Vec<Vec<String>> = cause
         .parameters
@@ -72,19 +82,22 @@ fn rivals(page: &mut Page, cause: &Cause) {
         alike.chain(cause.runners_up.iter().map(|a| ("runner-up", a))).collect();
     let weighed =
         cause.probability.is_some() || others.iter().any(|(_, a)| a.probability.is_some());
-    let row = |what: &str, effect: &str, into: &str, of: String, removed: f64, p: Option<f64>| {
+    let row = |what: &str, effect: &str, into: &str, of: String, removed: f64, chance: Cell| {
         let mut row: Vec<Cell> =
             vec![what.into(), effect.into(), into.into(), of.into(), share(removed)];
         if weighed {
-            row.push(p.map_or_else(|| "".into(), share));
+            row.push(chance);
         }
         row
     };
     let (removed, p) = (cause.error_removed, cause.probability);
-    let mut rows = vec![row("named", &cause.effect, &cause.into, coordinates(cause), removed, p)];
+    let chance = p.map_or_else(|| sentences::unweighed(None).into(), share);
+    let named = row("named", &cause.effect, &cause.into, coordinates(cause), removed, chance);
+    let mut rows = vec![named];
     rows.extend(others.into_iter().map(|(what, a)| {
         let of = a.of.clone().unwrap_or_default();
-        row(what, &a.effect, &a.into, of, a.error_removed, a.probability)
+        let chance = a.probability.map_or_else(|| sentences::unweighed(a.unweighed).into(), share);
+        row(what, &a.effect, &a.into, of, a.error_removed, chance)
     }));
     let mut header = vec!["", "effect", "into", "of", "removes"];
     if weighed {
@@ -171,5 +184,18 @@ pub fn figure(curve: &Curve) -> Figure {
     if curve.law.is_empty() {
         return figure;
     }
-    figure.line(Role::Law, "the law named", curve.law.clone())
+    let figure = match curve.band.is_empty() {
+        true => figure,
+        false => figure.band(Role::Law, "its 95 % band", curve.band.clone()),
+    };
+    let figure = figure.line(Role::Law, "the law named", curve.law.clone());
+    let others = OTHERS.into_iter().zip(&curve.others);
+    others.fold(figure, |figure, (role, other)| {
+        figure.line(role, &label(other), other.law.clone()).off()
+    })
+}
+
+/// `drag (3.1 %)`, `viscous + drag (0.2 %)`.
+fn label(other: &OtherLaw) -> String {
+    format!("{} ({})", other.effects.join(" + "), percent(other.probability))
 }

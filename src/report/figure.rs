@@ -33,7 +33,15 @@ pub enum Role {
     Floor,
     /// A remark, such as where a part of the record begins.
     Quiet,
+    /// Other laws of a place, which are drawn when they are asked for.
+    Other1,
+    Other2,
+    Other3,
+    Other4,
 }
+
+/// Roles of other laws, in their order.
+pub(super) const OTHERS: [Role; 4] = [Role::Other1, Role::Other2, Role::Other3, Role::Other4];
 
 impl Role {
     /// Class of the style sheet.
@@ -46,6 +54,10 @@ impl Role {
             Self::Free => "free",
             Self::Floor => "floor",
             Self::Quiet => "quiet",
+            Self::Other1 => "other1",
+            Self::Other2 => "other2",
+            Self::Other3 => "other3",
+            Self::Other4 => "other4",
         }
     }
 }

@@ -17,13 +17,14 @@ use super::page::{Block, Cell, Column, Kind, Page};
 const STYLE: &str = concat!(include_str!("vendor/uPlot.min.css"), "\n", include_str!("style.css"));
 
 /// The scripts of a page, in the order in which they use each other.
-const SCRIPTS: [&str; 10] = [
+const SCRIPTS: [&str; 11] = [
     include_str!("vendor/uPlot.iife.min.js"),
     include_str!("web/decode.js"),
     include_str!("web/thin.js"),
     include_str!("web/csv.js"),
     include_str!("web/theme.js"),
     include_str!("web/draw.js"),
+    include_str!("web/legend.js"),
     include_str!("web/chart.js"),
     include_str!("web/gestures.js"),
     include_str!("web/links.js"),
@@ -230,8 +231,12 @@ impl Body {
 /// A share as a bar, drawn so that it prints, with its per cent.
 fn bar(value: f64) -> String {
     let width = 90.0 * value.clamp(0.0, 1.0);
-    let text =
-        if value.is_finite() { format!("{:.1}\u{a0}%", 100.0 * value) } else { String::new() };
+    let text = match value {
+        v if !v.is_finite() => String::new(),
+        // a probability may be too small for a number
+        v if (0.0..5e-4).contains(&v) => "&lt;\u{a0}0.1\u{a0}%".into(),
+        v => format!("{:.1}\u{a0}%", 100.0 * v),
+    };
     format!(
         "<svg class=\"share\" viewBox=\"0 0 90 9\" aria-hidden=\"true\"><rect width=\"{width:.0}\" \
          height=\"9\" rx=\"2\"/></svg>{text}"

@@ -29,6 +29,7 @@ pub mod sentences;
 mod signals;
 mod svg;
 mod tables;
+mod test_record;
 mod thin;
 mod training;
 
@@ -142,6 +143,7 @@ impl<'a> Report<'a> {
         apart::section(&mut page, finding, self.outlook);
         missing::section(&mut page, finding);
         signals::sections(&mut page, &finding.series, finding);
+        test_record::section(&mut page, finding);
         distortion::section(&mut page, finding);
         if let Some(system) = self.system {
             parameters::section(&mut page, finding, system);
@@ -212,11 +214,17 @@ impl<'a> Report<'a> {
                 "Tested on data that neither fitted nor chose it: {} of {} causes in the machine confirmed, \
                  false discovery rate at most {}.",
                 promise.confirmed, promise.confirmed + promise.not_confirmed.len(),
-                number(promise.rate, None),
+                match promise.rate {
+                    rate if rate < LEAST_RATE => "one in a million".into(),
+                    rate => number(rate, None),
+                },
             ));
         }
     }
 }
+
+/// No test on a record makes a cause more certain than this: its assumptions are less so.
+const LEAST_RATE: f64 = 1e-6;
 
 const FOOTER: &str = "Read from top to bottom: what was found, how it shows, what else was \
 considered, what is left. A value \"a \u{b1} b\" has b as two standard errors. \"Removable\" is the mean \

@@ -2,6 +2,8 @@
 
 use super::figure::{Figure, Role};
 
+/// Samples of the close-up.
+const CLOSE: usize = 400;
 /// Records after which no more borders between records are drawn.
 const BORDERS: usize = 50;
 
@@ -9,14 +11,17 @@ const BORDERS: usize = 50;
 pub(super) struct Overlay<'a> {
     /// Name and unit.
     pub output: (&'a str, &'a str),
-    /// Sampling time in s.
+    /// Sampling time in s, and time of the first sample.
     pub step: f64,
+    pub start: f64,
     /// Measured values; NaN where there is none.
     pub measured: &'a [f64],
     /// Simulations, of the same length.
     pub simulated: Vec<(Role, &'static str, &'a [f64])>,
     /// First samples of records that follow others.
     pub borders: Vec<usize>,
+    /// What data these are, where there are others on the page: ` on the test record`, or nothing.
+    pub data: &'static str,
 }
 
 /// A quantity with its unit in brackets.
@@ -32,7 +37,32 @@ impl Overlay<'_> {
 
     /// Times of values.
     pub fn timed(&self, values: &[f64]) -> Vec<(f64, f64)> {
-        values.iter().enumerate().map(|(k, v)| (k as f64 * self.step, *v)).collect()
+        values.iter().enumerate().map(|(k, v)| (self.at(k), *v)).collect()
+    }
+
+    /// Time of a sample.
+    fn at(&self, k: usize) -> f64 {
+        self.start + k as f64 * self.step
+    }
+
+    /// Figures of the same data share their time axis.
+    pub fn link(&self) -> String {
+        format!("time{}", self.data)
+    }
+
+    /// The signal, of which the samples about the worst one are shown at first.
+    pub fn close_up(&self) -> Figure {
+        let from = self.worst().saturating_sub(CLOSE / 2);
+        self.signal(from.min(self.measured.len().saturating_sub(CLOSE)), CLOSE)
+    }
+
+    /// An input of the same data.
+    pub fn input(&self, name: &str, unit: &str, values: &[f64]) -> Figure {
+        Figure::new("time [s]", &with_unit(name, unit))
+            .titled(&format!("Input {name}{}", self.data))
+            .height(130.0)
+            .linked(&self.link())
+            .line(Role::Free, name, self.timed(values))
     }
 
     /// The sample around which the first simulation is most wrong.
@@ -48,12 +78,12 @@ impl Overlay<'_> {
         let (name, unit) = self.output;
         let last = self.measured.len().saturating_sub(1);
         let mut figure = Figure::new("time [s]", &with_unit(name, unit))
-            .titled(&format!("{name} over time"))
-            .linked("time")
+            .titled(&format!("{name} over time{}", self.data))
+            .linked(&self.link())
             .line(Role::Measured, "measured", self.timed(self.measured));
         if last > samples {
             let to = (from + samples).min(last);
-            figure = figure.view(from as f64 * self.step, to as f64 * self.step);
+            figure = figure.view(self.at(from), self.at(to));
         }
         for (role, label, values) in &self.simulated {
             let residual = self.residual(values);
@@ -71,8 +101,8 @@ impl Overlay<'_> {
     pub fn left(&self) -> Figure {
         let (name, unit) = self.output;
         let mut figure = Figure::new("time [s]", &with_unit(&format!("residual of {name}"), unit))
-            .titled(&format!("Residual of {name}: measured minus simulated"))
-            .linked("time")
+            .titled(&format!("Residual of {name}{}: measured minus simulated", self.data))
+            .linked(&self.link())
             .overview()
             .height(200.0);
         for (role, label, values) in &self.simulated {
@@ -80,7 +110,7 @@ impl Overlay<'_> {
         }
         if self.borders.len() <= BORDERS {
             for &k in &self.borders {
-                figure = figure.upright(Role::Quiet, "", k as f64 * self.step);
+                figure = figure.upright(Role::Quiet, "", self.at(k));
             }
         }
         figure
@@ -98,9 +128,11 @@ mod tests {
         let overlay = Overlay {
             output: ("y", "m"),
             step: 0.5,
+            start: 0.0,
             measured: &measured,
             simulated: vec![(Role::Before, "model", &model)],
             borders: vec![],
+            data: "",
         };
         assert_eq!(overlay.worst(), 3);
         let drawn = overlay.signal(0, 400).items[1].shape.points().unwrap().into_owned();

@@ -123,7 +123,8 @@ impl Page {
             _ => Kind::Text,
         };
         // the terminal and the JSON document keep to ASCII; a number and its % stay together
-        let text = plain(text).replace(" +- ", " \u{b1} ").replace(" %", "\u{a0}%");
+        let text = plain(text).replace(" +- ", " \u{b1} ");
+        let text = text.replace(" -> ", " \u{2192} ").replace(" %", "\u{a0}%");
         self.blocks.push(Block::Text { kind, text });
     }
 

@@ -2,12 +2,10 @@
 
 use super::analysis::{correlation, density};
 use super::figure::{Figure, Role, Scale};
-use super::overlay::{Overlay, with_unit};
+use super::overlay::Overlay;
 use super::page::Page;
 use crate::diagnose::{Finding, Series};
 
-/// Samples of the close-up.
-const CLOSE: usize = 400;
 const LAGS: usize = 60;
 /// Half width of a 99 % interval in standard deviations.
 const WIDE: f64 = 2.576;
@@ -24,6 +22,8 @@ pub fn sections(page: &mut Page, series: &Series, finding: &Finding) {
         let mut overlay = Overlay {
             output: (name, unit),
             step: series.sampling_time,
+            start: 0.0,
+            data: "",
             measured,
             simulated: vec![(Role::Before, "model", before)],
             borders: series.segments.iter().skip(1).map(|segment| segment.start).collect(),
@@ -33,8 +33,7 @@ pub fn sections(page: &mut Page, series: &Series, finding: &Finding) {
         }
         page.heading(&format!("{name}: measured and simulated"));
         let n = measured.len();
-        let from = overlay.worst().saturating_sub(CLOSE / 2).min(n.saturating_sub(CLOSE));
-        page.figure(overlay.signal(from, CLOSE));
+        page.figure(overlay.close_up());
         let (rb, ra) = (overlay.residual(before), overlay.residual(after));
         let mut figure = overlay.left();
         if series.split > 0 && series.split < n && series.segments.len() < 2 {
@@ -47,7 +46,9 @@ pub fn sections(page: &mut Page, series: &Series, finding: &Finding) {
         }
         page.figure(figure);
         if o == 0 {
-            inputs(page, series);
+            for (name, unit, values) in &series.inputs {
+                page.figure(overlay.input(name, unit, values));
+            }
         }
         page.element(
             "p",
@@ -60,19 +61,6 @@ pub fn sections(page: &mut Page, series: &Series, finding: &Finding) {
         spectrum(page, finding, (name, unit), residuals, series.sampling_time, found);
         against_itself(page, name, residuals, found);
         against_inputs(page, series, name, residuals, found);
-    }
-}
-
-/// The inputs, linked with the outputs along time.
-fn inputs(page: &mut Page, series: &Series) {
-    for (name, unit, values) in &series.inputs {
-        let timed = values.iter().enumerate().map(|(k, v)| (k as f64 * series.sampling_time, *v));
-        let figure = Figure::new("time [s]", &with_unit(name, unit))
-            .titled(&format!("Input {name}"))
-            .height(130.0)
-            .linked("time")
-            .line(Role::Free, name, timed.collect());
-        page.figure(figure);
     }
 }
 

@@ -184,6 +184,8 @@ impl<'a> TrainingReport<'a> {
             let overlay = Overlay {
                 output: (name, unit),
                 step: compared.record.sampling_time,
+                start: 0.0,
+                data: "",
                 measured: &measured.values,
                 simulated: vec![
                     (Role::Before, "baseline", baseline),

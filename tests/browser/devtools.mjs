@@ -142,8 +142,11 @@ export class Page {
   }
 
   async key(key, modifiers = 0) {
-    await this.call("Input.dispatchKeyEvent", { type: "keyDown", key, modifiers });
-    await this.call("Input.dispatchKeyEvent", { type: "keyUp", key, modifiers });
+    // what presses a button is told by its code
+    const more = key === " " ? { code: "Space", windowsVirtualKeyCode: 32 } : {};
+    const text = key === " " ? { text: " " } : {};
+    await this.call("Input.dispatchKeyEvent", { type: "keyDown", key, modifiers, ...more, ...text });
+    await this.call("Input.dispatchKeyEvent", { type: "keyUp", key, modifiers, ...more });
   }
 
   async picture(whole = true) {

@@ -106,7 +106,7 @@ test("values stand under the cursor, for the mouse, the keys and the ear", async
   await page.ask(() => document.querySelector("figure .strip").scrollIntoView({ block: "start" }));
   const { over } = named(await page.ask(figures), "y over time");
   await page.mouse("mouseMoved", over.left + over.width / 2, over.top + 20);
-  const values = () => [...document.querySelectorAll("figure:has(.strip) .value")].map((v) => v.textContent);
+  const values = () => [...document.querySelector("figure:has(.strip)").querySelectorAll(".value")].map((v) => v.textContent);
   const read = await page.ask(values);
   assert.equal(read.length, 3);
   assert.ok(read.every((text) => /^\u2212?[0-9.]+/.test(text)), `${read}`);
@@ -141,6 +141,48 @@ test("a line is switched off wherever it is shown", async () => {
   assert.ok(off.every((pixels, i) => pixels !== before[i]), `${before} ${off}`);
   assert.equal(await press(), "true");
   assert.deepEqual(await ink(), before);
+  await page.close();
+});
+
+test("other laws of a place are drawn when they are asked for, by keys", async () => {
+  for (const name of ["demo", "again", "long"]) {
+    const page = await open(name);
+    const law = async () => (await page.ask(figures)).find((figure) => figure.title.includes("missing in") || figure.title.includes("lacks in"));
+    const before = await law();
+    const focused = await page.ask(() => {
+      const entry = document.querySelector(".others .entry");
+      entry.focus();
+      return { group: entry.parentElement.getAttribute("aria-label"), text: entry.textContent, pressed: entry.getAttribute("aria-pressed") };
+    });
+    assert.equal(focused.group, "Other laws of this place");
+    assert.match(focused.text, /^[a-z_ +]+ \([^)]*%\)/);
+    assert.equal(focused.pressed, "false", "another law is drawn at first");
+    await page.key(" ");
+    assert.equal(await page.ask("document.activeElement.getAttribute('aria-pressed')"), "true");
+    assert.notEqual((await law()).inked, before.inked, `${name}: nothing was drawn`);
+    await page.key(" ");
+    assert.equal((await law()).inked, before.inked);
+    await page.close();
+  }
+});
+
+test("an axis shows the range that was asked for, and no whole decades", async () => {
+  for (const name of ["demo", "long"]) {
+    const page = await open(name);
+    const all = await page.ask(() => [...document.querySelectorAll("figure[data-figure]")].map((f) => [f.dataset.view, f.dataset.range]));
+    for (const [view, drawn] of all) assert.equal(drawn, view, name);
+    await page.close();
+  }
+});
+
+test("no two items of a figure look the same", async () => {
+  const page = await open("demo");
+  const looks = await page.ask(() => JSON.parse(document.getElementById("figures").textContent).charts.map((chart) =>
+    chart.items.filter((item) => item.label && item.kind === "line").map((item) => {
+      const { width, dash } = LOOKS[item.role];
+      return `${width} ${dash}`;
+    })));
+  for (const list of looks) assert.equal(new Set(list).size, list.length, `${list}`);
   await page.close();
 });
 

@@ -29,6 +29,12 @@ fn a_record_is_looked_at() {
     let document = run(&folder, "look --data d.csv --out looked --json").exits(0).json();
     assert!(document["records"][0]["coherences"][0]["share"].as_f64().unwrap() > 0.4);
     run(&folder, "look --data d.csv --inputs y --outputs u --out looked").exits(0);
+    // columns of other names: what is not looked for is said, and how it would be
+    replaced(&folder, "time [s],push [N],travel [m]");
+    let told = run(&folder, "look --data n.csv --out looked").exits(0);
+    assert!(told.err.contains("name it by --inputs, of: push, travel"), "{}", told.err);
+    let told = run(&folder, "look --data n.csv --inputs push --out looked").exits(0);
+    assert!(!told.err.contains("--inputs") && told.out.contains("answers push"), "{}", told.err);
 }
 
 #[test]

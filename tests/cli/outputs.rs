@@ -160,3 +160,24 @@ fn a_full_disk_leaves_what_there_was_and_nothing_beside_it() {
     };
     assert_eq!(left(&folder) + left(&folder.join("out")), 0);
 }
+
+#[test]
+fn exports_replace_their_own_and_nothing_foreign() {
+    let folder = folder("outputs_exports");
+    for to in ["c", "fmu", "matlab", "python"] {
+        let line = format!("export m.toml --to {to} --name unit --out {to}");
+        let first = run(&folder, &line).exits(0);
+        let named = first.out.lines().filter_map(|line| line.strip_prefix("Wrote "));
+        let files: Vec<String> = named.map(String::from).collect();
+        assert!(files.len() >= 2, "{to}: {files:?}");
+        // written again, every one of them is known as an export
+        run(&folder, &line).exits(0);
+        for file in &files {
+            let own = bytes(&folder, file);
+            std::fs::write(folder.join(file), "1,2\n3,4\n").unwrap();
+            refused(&folder, &line, file);
+            std::fs::write(folder.join(file), own).unwrap();
+        }
+    }
+    run(&folder, "export m.toml --to python --name unit --out python").exits(0);
+}

@@ -93,3 +93,53 @@ fn results_that_cannot_be_written() {
     // what could not be done left what there was
     assert_eq!(std::fs::read_to_string(folder.join("m.toml")).unwrap(), MODEL);
 }
+
+#[test]
+fn a_file_goes_to_stdout_and_words_stand_aside() {
+    let folder = scratch("stdout");
+    std::fs::write(folder.join("m.toml"), MODEL).unwrap();
+    record(&folder, "d.csv", "m.toml", 300, 0.01);
+    for (line, first, word) in [
+        ("simulate --model m.toml --data d.csv", "time [s],y_hat", "RMSE"),
+        ("estimate --model m.toml --data d.csv", "# Written by `lacuna estimate`", "NRMSE"),
+        ("estimate --lti 2 --data d.csv", "# Written by `lacuna estimate --lti`", "NRMSE"),
+        ("new duffing", "# Written by `lacuna new`", ""),
+    ] {
+        let ran = run(&folder, &format!("{line} --out -")).exits(0);
+        assert!(ran.out.starts_with(first), "{line}: {}", ran.out);
+        assert!(ran.err.contains(word) && !ran.out.contains("NRMSE 0"), "{line}: {}", ran.err);
+        assert!(!folder.join("-").exists(), "{line} wrote a file called -");
+        if first.starts_with('#') {
+            std::fs::write(folder.join("again.toml"), &ran.out).unwrap();
+            run(&folder, "simulate --model again.toml --data d.csv").exits(0);
+        }
+        let both = run(&folder, &format!("{line} --out - --json")).exits(2).json();
+        assert!(both["error"]["message"].as_str().unwrap().contains("both want stdout"), "{both}");
+    }
+    // several files have no room there
+    for line in [
+        "diagnose --model m.toml --data d.csv",
+        "look --data d.csv",
+        "demo",
+        "export m.toml --to c",
+        "man",
+    ] {
+        let ran = run(&folder, &format!("{line} --out -")).exits(2);
+        assert!(ran.err.contains("into a folder"), "{line}: {}", ran.err);
+        assert!(!folder.join("-").exists(), "{line}");
+    }
+}
+
+#[test]
+fn stdin_holds_one_record_and_no_model() {
+    let folder = scratch("stdin_once");
+    std::fs::write(folder.join("m.toml"), MODEL).unwrap();
+    for (line, said) in [
+        ("diagnose --model m.toml --data - --test -", "given with --data and with --test"),
+        ("diagnose --model m.toml --data - --data -", "given twice"),
+        ("simulate --model - --data d.csv", "a model is not read from standard input"),
+    ] {
+        let ran = run(&folder, line).exits(2);
+        assert!(ran.err.contains(said), "{line}: {}", ran.err);
+    }
+}

@@ -23,7 +23,7 @@ pub struct Diagnose {
     #[arg(long, value_name = "FILE")]
     pub test: Option<PathBuf>,
     /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = super::folder::folder())]
     pub out: PathBuf,
     /// Effects to look for, and no others
     #[arg(long, value_name = "EFFECT", value_delimiter = ',', num_args = 1..)]

@@ -18,7 +18,7 @@ pub struct Estimate {
     /// Record (CSV, .npz, .mat..; - is stdin); may be repeated for several records of one machine
     #[arg(long, value_name = "FILE", required = true)]
     pub data: Vec<PathBuf>,
-    /// Model file to write
+    /// Model file to write; - is stdout, which then holds nothing else
     #[arg(long, value_name = "FILE")]
     pub out: PathBuf,
     /// Parameters that are right
@@ -38,5 +38,13 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(step) if step > 0.0 && step.is_finite() => Ok(step),
         _ => Err("a positive number of seconds is needed".into()),
+    }
+}
+
+/// A probability, neither impossible nor certain.
+pub fn probability(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(level) if level > 0.0 && level < 1.0 => Ok(level),
+        _ => Err("a number between 0 and 1 is needed".into()),
     }
 }

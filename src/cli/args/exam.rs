@@ -51,7 +51,7 @@ pub struct Answer {
     #[arg(value_name = "DIR")]
     pub folder: PathBuf,
     /// Folder for the answers, one file a case; what is there is not done again
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = super::folder::folder())]
     pub out: PathBuf,
 }
 
@@ -64,7 +64,7 @@ pub struct Mark {
     #[arg(value_name = "ANSWERS")]
     pub answers: PathBuf,
     /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = super::folder::folder())]
     pub out: PathBuf,
 }
 

@@ -29,6 +29,6 @@ pub struct Export {
     #[arg(long, value_name = "NAME", default_value = "model")]
     pub name: String,
     /// Folder for the files
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = super::folder::folder())]
     pub out: PathBuf,
 }

@@ -20,6 +20,6 @@ pub struct Look {
     #[arg(long, value_name = "S", value_parser = super::estimate::seconds, conflicts_with = "model")]
     pub sampling_time: Option<f64>,
     /// Folder for the page
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = super::folder::folder())]
     pub out: PathBuf,
 }

@@ -22,7 +22,7 @@ pub struct New {
     /// Time between two samples in s, for records without a column `time`
     #[arg(long, value_name = "S", value_parser = super::estimate::seconds)]
     pub sampling_time: Option<f64>,
-    /// Model file to write [default: stdout]
+    /// Model file to write; - is stdout [default: stdout]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }

@@ -9,7 +9,7 @@ pub struct Report {
     /// Folder of a diagnosis, or its diagnosis.json
     #[arg(value_name = "DIR", default_value = "lacuna-out")]
     pub of: PathBuf,
-    /// File for the page [default: report.html in that folder]
+    /// File for the page; - is stdout [default: report.html in that folder]
     #[arg(long, value_name = "FILE")]
     pub out: Option<PathBuf>,
 }

@@ -21,7 +21,7 @@ pub struct Study {
     #[arg(long, value_name = "KEY", num_args = 1.., conflicts_with = "shard")]
     pub case: Vec<String>,
     /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = super::folder::folder())]
     pub out: PathBuf,
 }
 
@@ -38,7 +38,7 @@ pub struct Merge {
     #[arg(value_name = "DIR", required = true)]
     pub folders: Vec<PathBuf>,
     /// Folder for the results
-    #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
+    #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = super::folder::folder())]
     pub out: PathBuf,
 }
 

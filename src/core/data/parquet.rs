@@ -5,14 +5,34 @@ use super::error::{DataError, place};
 use super::records;
 use super::remark::Remark;
 use super::table::Table;
+use ::parquet::file::metadata::ParquetMetaData;
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use ::parquet::record::Field;
+
+/// What is impossible in where a file says that its columns lie; a reader that trusts it panics.
+fn contradiction(of: &ParquetMetaData, length: usize) -> Option<String> {
+    let within = |start: i64, size: i64| {
+        let end = start.checked_add(size).and_then(|end| usize::try_from(end).ok());
+        start >= 0 && size >= 0 && end.is_some_and(|end| end <= length)
+    };
+    let mut columns = of.row_groups().iter().flat_map(|group| group.columns());
+    let wrong = columns.find(|column| {
+        let starts = [Some(column.data_page_offset()), column.dictionary_page_offset()];
+        let first = starts.into_iter().flatten().min().unwrap_or(-1);
+        !within(first, column.compressed_size()) || column.num_values() < 0
+    })?;
+    let (name, size) = (wrong.column_path().string(), wrong.compressed_size());
+    Some(format!("column `{name}` is said to have {size} bytes where the file has {length}"))
+}
 
 /// The records of a Parquet file.
 pub(super) fn tables(bytes: &[u8], source: &str) -> Result<Vec<Table>, DataError> {
     let broken = |found: String| DataError::Broken { at: place(source, None, None), found };
     let reader = SerializedFileReader::new(bytes::Bytes::copy_from_slice(bytes))
         .map_err(|error| broken(error.to_string()))?;
+    if let Some(found) = contradiction(reader.metadata(), bytes.len()) {
+        return Err(broken(found));
+    }
     let schema = reader.metadata().file_metadata().schema();
     let names: Vec<String> =
         schema.get_fields().iter().map(|field| field.name().to_owned()).collect();

@@ -2,7 +2,7 @@
 
 use crate::candidates::candidate::{Candidate, Preference, Wire};
 use crate::effect::{Mechanism, Named, Needs, Role};
-use crate::findings::cause::{Alternative, LawPart, Site, Value, Wording};
+use crate::findings::cause::{Alternative, LawPart, Site, Unweighed, Value, Wording};
 use crate::register;
 
 impl Candidate {
@@ -36,7 +36,8 @@ impl Candidate {
         }
     }
 
-    /// It as another explanation, with the share of the removable error that it removes.
+    /// It as another explanation, with the share of the removable error that it removes; not weighed
+    /// yet.
     pub fn alternative(&self, error_removed: f64) -> Alternative {
         Alternative {
             effect: self.effect.into(),
@@ -44,6 +45,7 @@ impl Candidate {
             of: self.of.clone(),
             error_removed,
             probability: None,
+            unweighed: Some(Unweighed::NotCompared),
             title: self.shape.title(&self.named),
             site: self.site(),
         }

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 use crate::candidates::naming::title_of;
 use crate::data::Record;
-use crate::findings::cause::{Alternative, Cause, ColumnFault, Site, Value};
+use crate::findings::cause::{Alternative, Cause, ColumnFault, Site, Unweighed, Value};
 use crate::findings::causes::of_column;
 use crate::validate::noise_floor::NoiseFloor;
 
@@ -119,6 +119,7 @@ impl Fault {
             of: None,
             error_removed: self.removed,
             probability: None,
+            unweighed: Some(Unweighed::NotCompared),
             title: title_of(self.kind.effect()),
             site: Site::Column,
         }

@@ -34,6 +34,9 @@ pub struct Alternative {
     pub error_removed: f64,
     /// Probability that it is the cause; `None` where it was not compared as a hypothesis.
     pub probability: Option<f64>,
+    /// Why it has no probability of its own; `None` where it has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub unweighed: Option<Unweighed>,
     /// What the effect calls itself at this place; its name where it does not say.
     #[serde(skip)]
     pub title: String,
@@ -42,11 +45,29 @@ pub struct Alternative {
     pub site: Site,
 }
 
+impl Alternative {
+    /// The same with its probability.
+    #[must_use]
+    pub(crate) fn weighed(self, probability: f64) -> Self {
+        Self { probability: Some(probability), unweighed: None, ..self }
+    }
+}
+
 impl std::fmt::Display for Alternative {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{} into {}", self.effect, self.into)?;
         self.of.as_ref().map_or(Ok(()), |of| write!(f, " of {of}"))
     }
+}
+
+/// Why an explanation has no probability of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Unweighed {
+    /// It is the headline under another name: both are one model, and share its probability.
+    SameModel,
+    /// It was found by a test, not compared as a model with others.
+    NotCompared,
 }
 
 /// What kind of place a cause enters.

@@ -7,7 +7,9 @@ use crate::candidates::naming::title_of;
 use crate::candidates::sums::by_likeness;
 use crate::effect::Size;
 use crate::error::DiagnoseError;
-use crate::findings::cause::{Alternative, Cause, ColumnFault, LawPart, Site, Value, Wording};
+use crate::findings::cause::{
+    Alternative, Cause, ColumnFault, LawPart, Site, Unweighed, Value, Wording,
+};
 use crate::findings::context::Context;
 use crate::fit::finished::Finished;
 use crate::fit::found::SET;
@@ -165,7 +167,8 @@ impl Context<'_, '_> {
         });
         let named = |v: Value| Value { name: "value".into(), ..v };
         let parameters = values.into_iter().map(named).collect();
-        let other = limit.alternative(share);
+        let unweighed = Some(Unweighed::SameModel);
+        let other = Alternative { unweighed, ..limit.alternative(share) };
         let fault = of_column("clipping", &limit.into, ColumnFault::Clipping, parameters, rows);
         Cause { p_value, error_removed: share, indistinguishable: vec![other], ..fault }
     }
@@ -272,15 +275,25 @@ fn alternatives(
     let twins = cause.twins.iter().map(|(into, of, _)| Alternative {
         into: into.clone(),
         of: of.clone(),
+        unweighed: Some(Unweighed::SameModel),
         ..cause.alternative(share)
     });
-    let as_data = |(c, gain): &(Arc<Candidate>, f64)| c.alternative(gain.clamp(0.0, 1.0) * share);
-    let chances = slot.belief.iter().flat_map(|belief| &belief.members).copied().map(Some);
-    let chances = chances.chain(std::iter::repeat(None));
-    let members = slot.set.iter().zip(chances).filter(|((member, _), _)| !member.same_cause(cause));
-    let member = |(own, probability)| Alternative { probability, ..as_data(own) };
+    let weighed = |list: &[(Arc<Candidate>, f64)], chances: Option<&Vec<f64>>| {
+        let one = |(i, (other, gain)): (usize, &(Arc<Candidate>, f64))| {
+            let plain = other.alternative(gain.clamp(0.0, 1.0) * share);
+            match chances.and_then(|chances| chances.get(i)) {
+                Some(&chance) => plain.weighed(chance),
+                None => plain,
+            }
+        };
+        list.iter().enumerate().map(one).collect::<Vec<Alternative>>()
+    };
+    let belief = slot.belief.as_ref();
+    let members = weighed(&slot.set, belief.map(|belief| &belief.members)).into_iter();
+    let others = weighed(&slot.others, belief.map(|belief| &belief.others));
+    let members = members.zip(&slot.set).filter(|(_, (own, _))| !own.same_cause(cause));
     // other laws before twins: where there are too many, twins are missed least
-    let mut alike: Vec<Alternative> = members.map(member).chain(twins).collect();
+    let mut alike: Vec<Alternative> = members.map(|(said, _)| said).chain(twins).collect();
     alike.retain(|a: &Alternative| {
         let name = (a.effect.clone(), a.into.clone(), a.of.clone());
         let new = !known.contains(&name);
@@ -288,6 +301,6 @@ fn alternatives(
         new
     });
     let too_many = alike.split_off((SET - 1).min(alike.len()));
-    let next = too_many.into_iter().chain(slot.others.iter().map(as_data)).take(4).collect();
+    let next = too_many.into_iter().chain(others).take(4).collect();
     (alike, next)
 }

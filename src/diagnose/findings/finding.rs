@@ -12,6 +12,7 @@ use crate::findings::closed_loop::ClosedLoop;
 use crate::findings::distortion::Distortion;
 use crate::findings::error_band::Regime;
 use crate::findings::note::Note;
+use crate::findings::series::Series;
 use crate::fit::hypothesis::{Moved, Track};
 use crate::system::System;
 use crate::validate::noise_floor::NoiseFloor;
@@ -235,46 +236,4 @@ impl std::fmt::Display for Finding {
             names => f.write_str(&names.join("; ")),
         }
     }
-}
-
-/// Series that the report draws.
-#[derive(Debug, Clone, Default)]
-pub struct Series {
-    /// Sampling time in s.
-    pub sampling_time: f64,
-    /// Name and unit of every output.
-    pub outputs: Vec<(String, String)>,
-    /// Name and unit of every input, and its values.
-    pub inputs: Vec<(String, String, Vec<f64>)>,
-    /// Measured outputs on the estimation data.
-    pub measured: Vec<Vec<f64>>,
-    /// Simulated by the baseline.
-    pub before: Vec<Vec<f64>>,
-    /// Simulated by the extended model.
-    pub after: Vec<Vec<f64>>,
-    /// Stretches of the estimation data that were simulated without a break.
-    pub segments: Vec<std::ops::Range<usize>>,
-    /// First sample of the part that chose.
-    pub split: usize,
-    /// Flagged samples per output.
-    pub flagged: Vec<Vec<usize>>,
-    /// One picture per cause: the missing quantity against the coordinate.
-    pub curves: Vec<Curve>,
-}
-
-/// The missing quantity against the coordinate that it depends on.
-#[derive(Debug, Clone, Default)]
-pub struct Curve {
-    /// Cause it belongs to; where there is none, the curve that comes nearest to what is left.
-    pub cause: usize,
-    /// Coordinate and unit.
-    pub coordinate: (String, String),
-    /// Channel and unit.
-    pub channel: (String, String),
-    /// Coordinate values of the fitted law, and its values.
-    pub law: Vec<(f64, f64)>,
-    /// Free curve estimated from the data: coordinate, value, standard error.
-    pub knots: Vec<(f64, f64, f64)>,
-    /// Of a law of two coordinates: where the other one is held, in words, and the law there.
-    pub slices: Vec<(String, Vec<(f64, f64)>)>,
 }

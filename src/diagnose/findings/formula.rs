@@ -5,10 +5,11 @@ use nalgebra::{DMatrix, DVector};
 use crate::candidates::network_start::value;
 use crate::digits::number;
 use crate::effect::View;
-use crate::findings::cause::FoundShape;
+use crate::findings::cause::{Cause, FoundShape};
 use crate::findings::context::Context;
-use crate::findings::finding::Curve;
+use crate::findings::law_band::{band, other_law};
 use crate::findings::pictures::curves;
+use crate::findings::series::Curve;
 use crate::fit::finished::Finished;
 use crate::fit::problem::{Added, Grain, Model, Problem};
 use crate::plugins::effects::network::Network;
@@ -239,10 +240,18 @@ fn slices(problem: &Problem<'_>, nominal: &Nominal, model: &Model) -> Vec<Curve>
 }
 
 impl Context<'_, '_> {
-    /// Pictures of all causes that can be drawn.
-    pub fn pictures(&self, chosen: &Finished) -> Vec<Curve> {
+    /// Pictures of all causes that can be drawn; `causes` are those of the places of the model, in order.
+    pub fn pictures(&self, chosen: &Finished, causes: &[Cause]) -> Vec<Curve> {
         let (problem, nominal, model) = (self.problem, self.nominal, &chosen.fitted.model);
         let mut all = curves(problem, nominal, &chosen.nuisance, model);
+        let (places, step) = (model.places(), problem.step(Grain::Fine));
+        for curve in &mut all {
+            let (own, cause) = (&places[curve.cause], &causes[curve.cause]);
+            let z: Vec<f64> = curve.law.iter().map(|p| p.0).collect();
+            curve.band = band(chosen, own, &cause.parts, step, &z);
+            let laws = chosen.found.slots[own[0]].laws.iter();
+            curve.others = laws.map(|laws| other_law(laws, model, step, &z)).collect();
+        }
         all.extend(slices(problem, nominal, model));
         all
     }

@@ -9,10 +9,10 @@ use crate::findings::distortion::Distortion;
 use crate::findings::error_band::Regime;
 use crate::findings::finding::SingleRecord;
 use crate::findings::finding::{
-    FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores, Series,
-    Verdict,
+    FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores, Verdict,
 };
 use crate::findings::note::Note;
+use crate::findings::series::Series;
 use crate::fit::hypothesis::Track;
 use crate::system::System;
 use crate::validate::noise_floor::NoiseFloor;

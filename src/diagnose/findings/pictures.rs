@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::candidates::coordinate::source_of;
 use crate::effect::View;
-use crate::findings::finding::Curve;
+use crate::findings::series::Curve;
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Job, Model, Part, Problem, Span};
 use crate::plugins::effects::free_form::FreeForm;
@@ -47,7 +47,7 @@ pub(crate) fn curves(
                 channel: (cause.into.clone(), cause.units.0.clone()),
                 law: z.into_iter().zip(law).collect(),
                 knots,
-                slices: vec![],
+                ..Curve::default()
             })
         })
         .collect()

@@ -6,11 +6,13 @@ use crate::candidates::candidate::Wire;
 use crate::data::Record;
 use crate::error::DiagnoseError;
 use crate::evaluate::Metrics;
+use crate::findings::cause::Cause;
 use crate::findings::causes::Scores as By;
 use crate::findings::context::{Context, Source};
-use crate::findings::finding::{Left, OtherTrack, Ranked, Scores, Series, Verdict};
+use crate::findings::finding::{Left, OtherTrack, Ranked, Scores, Verdict};
 use crate::findings::hand_over::Searched;
 use crate::findings::remarks::made_up_for;
+use crate::findings::series::{Series, TestSeries};
 use crate::fit::finished::Finished;
 use crate::fit::hypothesis::{Moved, Track};
 use crate::fit::problem::{Grain, Model, Part};
@@ -61,6 +63,7 @@ impl Context<'_, '_> {
         };
         let mut causes = self.causes(chosen, &by)?;
         let false_discovery = false_discovery(&causes);
+        let mut series = self.series(chosen, &y_before, &causes);
         let structural = causes.iter().filter(|cause| !cause.is_data_fault()).count();
         causes.extend(self.outliers(chosen, from.firsts));
         let withdrawn = self.withdrawn(chosen, test, &after)?;
@@ -80,6 +83,7 @@ impl Context<'_, '_> {
         let unknown = verdict == Verdict::Unexplained && causes.is_empty();
         let nearest = unknown.then(|| self.suspicion(chosen)).flatten();
         let (curve, note) = nearest.unzip();
+        series.curves.extend(curve);
         notes.extend(note);
         let noise_floor = self.noise_floor(&off_before, &drives, from.used);
         let regime = match verdict {
@@ -88,6 +92,7 @@ impl Context<'_, '_> {
             }
             _ => BTreeMap::new(),
         };
+        series.test = test.series(system, &before, &after)?;
         Ok(Searched {
             verdict,
             track: chosen.track,
@@ -106,7 +111,7 @@ impl Context<'_, '_> {
             notes,
             held: self.held(from.fixed),
             causes,
-            series: self.series(chosen, &y_before, curve),
+            series,
             extended,
             verdict_probability: match verdict {
                 Verdict::NothingFound => Some(chosen.found.nothing),
@@ -250,12 +255,7 @@ impl Context<'_, '_> {
         ranked.collect()
     }
 
-    fn series(
-        &self,
-        chosen: &Finished,
-        before: &[Vec<f64>],
-        nearest: Option<crate::findings::finding::Curve>,
-    ) -> Series {
+    fn series(&self, chosen: &Finished, before: &[Vec<f64>], causes: &[Cause]) -> Series {
         let signals = &self.problem.base.signals;
         let inputs = signals.inputs.iter().zip(&self.joined.drive.inputs);
         Series {
@@ -268,7 +268,8 @@ impl Context<'_, '_> {
             segments: self.joined.drive.segments.clone(),
             split: self.problem.samples(Part::Choose).next().unwrap_or(self.problem.len()),
             flagged: chosen.found.spikes.clone(),
-            curves: self.pictures(chosen).into_iter().chain(nearest).collect(),
+            curves: self.pictures(chosen, causes),
+            test: TestSeries::default(),
         }
     }
 }

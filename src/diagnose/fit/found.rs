@@ -16,6 +16,8 @@ pub(crate) struct Slot {
     pub set: Vec<(Arc<Candidate>, f64)>,
     /// Others that were refitted, with the share of the best's gain that they reach.
     pub others: Vec<(Arc<Candidate>, f64)>,
+    /// Laws that were fitted at the same place in its stead, the most probable first.
+    pub laws: Vec<OtherLaws>,
     /// Score of the model with it against that without it, on the part that chooses; 0 where the
     /// two were not compared.
     pub score: f64,
@@ -32,12 +34,29 @@ pub(crate) struct Belief {
     pub place: f64,
     /// That each member of the set is, the headline first.
     pub members: Vec<f64>,
+    /// That each of the others is.
+    pub others: Vec<f64>,
+}
+
+/// Laws of one place in the stead of those that were named.
+#[derive(Debug, Clone)]
+pub(crate) struct OtherLaws {
+    /// Laws with the numbers that the search ended with.
+    pub added: Vec<Added>,
+    /// Probability that the first one is at work.
+    pub probability: f64,
 }
 
 impl Slot {
     /// A cause that was compared with no other.
     pub fn of(cause: &Arc<Candidate>) -> Self {
-        Self { set: vec![(cause.clone(), 1.0)], others: vec![], score: 0.0, belief: None }
+        Self {
+            set: vec![(cause.clone(), 1.0)],
+            others: vec![],
+            laws: vec![],
+            score: 0.0,
+            belief: None,
+        }
     }
 }
 

@@ -209,5 +209,6 @@ fn slot(own: &Arc<Candidate>, cause: &NamedCause, alike: &[(Arc<Candidate>, f64)
         members.push(*chance);
     }
     let (law, place) = (cause.probability, cause.place_probability);
-    Slot { set, others: vec![], score: 0.0, belief: Some(Belief { law, place, members }) }
+    let belief = Belief { law, place, members, others: vec![] };
+    Slot { set, others: vec![], laws: vec![], score: 0.0, belief: Some(belief) }
 }

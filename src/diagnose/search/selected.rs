@@ -7,14 +7,15 @@ use super::dictionary::Item;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::screen::{Scored, Screen};
 use crate::criteria::LOOK_ALIKE;
-use crate::fit::found::{Belief, SET, Slot};
-use crate::fit::problem::{Grain, Part, Problem};
+use crate::fit::found::{Belief, OtherLaws, SET, Slot};
+use crate::fit::problem::{Added, Grain, Part, Problem};
 use crate::statistics::{dot, project, wald};
 
 /// Candidates that are listed.
 const LISTED: usize = 200;
-/// Others that are said beside a set.
+/// Others that are said beside a set, and laws of its place that are drawn.
 const OTHERS: usize = 4;
+const DRAWN: usize = 4;
 
 /// Whether a model has a cause of this name.
 fn has(fit: &Fit, wanted: &Candidate) -> bool {
@@ -53,7 +54,7 @@ fn slot(problem: &Problem<'_>, beam: &Beam, headline: &Fit, own: &[usize]) -> Sl
         true => (base - squares(fit)) / (base - squares(headline)).max(1e-300),
         false => 1.0,
     };
-    let mut members: Vec<(f64, Arc<Candidate>, f64)> = vec![];
+    let mut members: Vec<(f64, Arc<Candidate>, f64, &Fit)> = vec![];
     for fit in beam.fits().filter(|fit| fit.free == headline.free) {
         let is_rest = |cause: &Candidate| bare.added.iter().any(|a| a.cause.same_cause(cause));
         let causes = fit.model.added.iter().map(|added| &added.cause);
@@ -63,32 +64,65 @@ fn slot(problem: &Problem<'_>, beam: &Beam, headline: &Fit, own: &[usize]) -> Sl
         let one_place =
             other.iter().all(|cause| cause.same_cause(other[0]) || cause.same_place(other[0]));
         if stay.len() == bare.added.len() && still.len() < own.len() && one_place {
-            members.extend(other.into_iter().map(|c| (fit.posterior(), c.clone(), gain(fit))));
+            let member = |c: &Arc<Candidate>| (fit.posterior(), c.clone(), gain(fit), fit);
+            members.extend(other.into_iter().map(member));
         }
     }
     members.sort_by(|a, b| b.0.total_cmp(&a.0));
     let mut seen: Vec<Arc<Candidate>> = vec![];
-    members.retain(|(_, cause, _)| {
+    members.retain(|(_, cause, ..)| {
         let is_new = !seen.iter().any(|known| known.same_cause(cause));
         seen.push(cause.clone());
         is_new
     });
+    let chance = |cause: &Candidate| beam.probability(|fit| has(fit, cause));
+    let in_place = members.iter().filter(|(_, cause, ..)| cause.same_place(laws[0]));
+    let in_place = in_place.map(|(_, cause, _, fit)| (cause, *fit));
+    let other_laws = other_laws(laws[0], in_place, chance);
     let top = beam.best().map_or(0.0, Fit::posterior);
     let near = members.iter().filter(|m| (m.0 - top).exp() > LOOK_ALIKE).count();
-    let others = members.split_off(near.min(SET - 1));
+    let mut others = members.split_off(near.min(SET - 1));
+    others.truncate(OTHERS);
     let mut set = vec![(laws[0].clone(), 1.0)];
-    set.extend(members.into_iter().map(|(_, cause, gain)| (cause, gain)));
-    let chances = set.iter().map(|(c, _)| beam.probability(|fit| has(fit, c))).collect();
+    set.extend(members.into_iter().map(|(_, cause, gain, _)| (cause, gain)));
+    let others: Vec<_> = others.into_iter().map(|(_, cause, gain, _)| (cause, gain)).collect();
+    let chances = |of: &[(Arc<Candidate>, f64)]| of.iter().map(|(c, _)| chance(c)).collect();
     let belief = Belief {
         law: beam.probability(|fit| laws.iter().all(|law| has(fit, law))),
         place: beam.probability(|fit| has_place(fit, laws[0])),
-        members: chances,
+        members: chances(&set),
+        others: chances(&others),
     };
     let y = |fit: &Fit| problem.simulate(&fit.model, Grain::Coarse);
     let both = without.and_then(|without| y(without).zip(y(headline)));
     let score = both.map_or(0.0, |(a, b)| problem.better(&a, &b, Part::Choose));
-    let others = others.into_iter().take(OTHERS).map(|(_, cause, gain)| (cause, gain)).collect();
-    Slot { set, others, score, belief: Some(belief) }
+    Slot { set, others, laws: other_laws, score, belief: Some(belief) }
+}
+
+/// The laws that fits have at the place of one, in the stead of those that were named.
+fn other_laws<'a>(
+    here: &Candidate,
+    fits: impl Iterator<Item = (&'a Arc<Candidate>, &'a Fit)>,
+    chance: impl Fn(&Candidate) -> f64,
+) -> Vec<OtherLaws> {
+    let mut found: Vec<OtherLaws> = vec![];
+    for (cause, fit) in fits {
+        let added = fit.model.added.iter().filter(|a| a.cause.same_place(here));
+        let mut added: Vec<Added> = added.cloned().collect();
+        // the one that is new here gives the sum its name
+        added.sort_by_key(|a| !a.cause.same_cause(cause));
+        let same = |known: &OtherLaws| {
+            let has = |a: &Added| known.added.iter().any(|b| b.cause.same_cause(&a.cause));
+            known.added.len() == added.len() && added.iter().all(has)
+        };
+        if added.iter().all(|a| a.cause.is_curve()) && !found.iter().any(same) {
+            found.push(OtherLaws { added, probability: chance(cause) });
+        }
+        if found.len() == DRAWN {
+            break;
+        }
+    }
+    found
 }
 
 /// The ranking of candidates before any fit.

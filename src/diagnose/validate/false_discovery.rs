@@ -86,14 +86,12 @@ pub(crate) fn false_discovery(causes: &[Cause]) -> Option<FalseDiscovery> {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::BTreeMap;
-
     use rand::{RngExt, SeedableRng};
 
     use super::*;
 
     fn scored(errors: Vec<f64>) -> Scored {
-        Scored { errors: vec![errors], metrics: BTreeMap::new() }
+        Scored { errors: vec![errors], ..Scored::default() }
     }
 
     /// Noise with a pole, of which the best of 50 shapes is chosen on the first half.

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Metrics, Run};
+use crate::findings::series::TestSeries;
 use crate::system::System;
 use crate::validate::noise_floor::{self, Floor, predicted, predicted_by, repeated};
 
@@ -24,9 +25,12 @@ pub(crate) enum Counted {
 }
 
 /// A model's errors on the test data.
+#[derive(Default)]
 pub(crate) struct Scored {
     /// Error series per output, all records one after the other.
     pub errors: Vec<Vec<f64>>,
+    /// What was simulated, sample by sample as the errors.
+    pub simulated: Vec<Vec<f64>>,
     pub metrics: BTreeMap<String, Metrics>,
 }
 
@@ -35,34 +39,86 @@ impl TestData {
     pub fn score(&self, system: &System) -> Result<Scored, EvaluateError> {
         let signals = system.signals();
         let mut errors = vec![vec![]; signals.outputs.len()];
-        let mut pairs: Vec<(Vec<f64>, Vec<f64>)> = vec![(vec![], vec![]); signals.outputs.len()];
+        let (mut measured, mut simulated) = (errors.clone(), errors.clone());
         for (r, record) in self.records.iter().enumerate() {
             let run = Run::new(system, record)?;
-            let (from, starts) = match &self.counted {
-                Counted::After(init) => {
-                    let count = run.init_samples(*init);
-                    (count, run.starts(count))
-                }
-                Counted::From(from) => (from[r], run.starts(telling(&run, from[r]))),
-                Counted::All => (0, run.starts_of_stretches()),
+            let from = self.first(r, &run);
+            let starts = match &self.counted {
+                Counted::After(_) => run.starts(from),
+                Counted::From(_) => run.starts(telling(&run, from)),
+                Counted::All => run.starts_of_stretches(),
             };
             let track = run.track(starts);
-            for (o, measured) in run.measured.iter().enumerate() {
-                let Some(measured) = measured else { continue };
-                for k in from..measured.len() {
-                    errors[o].push(measured[k] - track.y[o][k]);
-                    pairs[o].0.push(measured[k]);
-                    pairs[o].1.push(track.y[o][k]);
+            for (o, y) in run.measured.iter().enumerate() {
+                let Some(y) = y else { continue };
+                for k in from..y.len() {
+                    errors[o].push(y[k] - track.y[o][k]);
+                    measured[o].push(y[k]);
+                    simulated[o].push(track.y[o][k]);
                 }
             }
         }
         let metrics = signals
             .outputs
             .iter()
-            .zip(&pairs)
+            .zip(measured.iter().zip(&simulated))
             .filter_map(|(s, (y, yhat))| Metrics::of(y, yhat).map(|m| (s.name.clone(), m)))
             .collect();
-        Ok(Scored { errors, metrics })
+        Ok(Scored { errors, simulated, metrics })
+    }
+
+    /// The first sample of a record that counts.
+    fn first(&self, record: usize, run: &Run<'_>) -> usize {
+        match &self.counted {
+            Counted::After(init) => run.init_samples(*init),
+            Counted::From(from) => from[record],
+            Counted::All => 0,
+        }
+    }
+
+    /// The samples that count with what two models, whose scores these are, make of them: those from
+    /// which on both have forgotten their start.
+    pub fn series(
+        &self,
+        system: &System,
+        before: &Scored,
+        after: &Scored,
+    ) -> Result<TestSeries, EvaluateError> {
+        let signals = system.signals();
+        let mut series = TestSeries {
+            inputs: vec![vec![]; signals.inputs.len()],
+            measured: vec![vec![]; signals.outputs.len()],
+            before: before.simulated.clone(),
+            after: after.simulated.clone(),
+            ..TestSeries::default()
+        };
+        let mut count = 0;
+        for (r, record) in self.records.iter().enumerate() {
+            let run = Run::new(system, record)?;
+            let from = self.first(r, &run);
+            if r == 0 {
+                series.skipped = from;
+            }
+            series.begins.push(count);
+            count += record.len().saturating_sub(from);
+            for (all, u) in series.inputs.iter_mut().zip(&run.drive.inputs) {
+                all.extend(u.iter().skip(from));
+            }
+            for (all, y) in series.measured.iter_mut().zip(&run.measured) {
+                all.extend(y.iter().flat_map(|y| y.iter().skip(from)));
+            }
+        }
+        // a model that forgets its start later counts fewer samples; all end with the record
+        let lengths = series.before.iter().zip(&series.after).map(|(b, a)| b.len().min(a.len()));
+        let both = lengths.filter(|n| *n > 0).min().unwrap_or(count);
+        if let [0] = series.begins[..] {
+            series.skipped += count - both.min(count);
+            let signals = series.inputs.iter_mut().chain(&mut series.measured);
+            for signal in signals.chain(&mut series.before).chain(&mut series.after) {
+                signal.drain(..signal.len().saturating_sub(both));
+            }
+        }
+        Ok(series)
     }
 
     /// Noise of every output, from these records and the baseline's errors on them and on the

@@ -1,4 +1,4 @@
-/* Compares with the test vector: to 1e-9 of each output's largest value. */
+/* Written by `lacuna export`: compares with the test vector: to 1e-9 of each output's largest value. */
 #include "model.h"
 #include "test_vector.h"
 

@@ -1,5 +1,5 @@
 function [y, x] = @NAME@(u, parameters)
-% @NAME@: outputs along inputs, one sample of @TS@ s per row. Written by lacuna.
+% @NAME@: outputs along inputs, one sample of @TS@ s per row. Written by `lacuna export`.
 %
 %   [y, x] = @NAME@(u) simulates from the start. Columns of u: @INPUTS@
 %   Columns of y: @OUTPUTS@

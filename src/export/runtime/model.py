@@ -1,4 +1,4 @@
-"""One sample of @TS@ s per step. Written by lacuna; needs numpy."""
+"""One sample of @TS@ s per step. Written by `lacuna export`; needs numpy."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-% Compares with the test vector: to 1e-9 of each output's largest value.
+% Written by `lacuna export`: compares with the test vector: to 1e-9 of each output's largest value.
 rows = dlmread('test_vector.csv', ',', 1, 0);
 expected = rows(:, @NU@ + 1:end);
 y = @NAME@(rows(:, 1:@NU@));

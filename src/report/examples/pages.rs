@@ -89,10 +89,16 @@ fn law(page: &mut Page, channel: &str) {
         Figure::new("v_1 [m/s]", &format!("missing in {channel} [N]"))
             .titled(&format!("What the model lacks in {channel} against v_1"))
             .height(320.0)
-            .band(Role::Floor, "95 % band", band)
             .dots(Role::Free, "without a shape", dots)
+            .band(Role::Law, "its 95 % band", band)
             .line(Role::Law, "the law named", named)
-            .line(Role::Before, "drag", vec![(-1.0, 1.5), (1.0, -1.5)])
+            .line(Role::Other1, "linear (0.2 %)", vec![(-1.0, 1.5), (1.0, -1.5)])
+            .off()
+            .line(
+                Role::Other2,
+                &format!("{channel} (less than 0.1 %)"),
+                vec![(-1.0, 3.5), (1.0, -3.5)],
+            )
             .off(),
     );
     let row = |what: &str, name: &str, value| {

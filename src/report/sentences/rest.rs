@@ -2,7 +2,7 @@
 
 use super::cause::phrase;
 use crate::diagnose::{
-    Alternative, Cause, Finding, Left, NotFound, RecordFacts, Verdict, Withdrawn,
+    Alternative, Cause, Finding, Left, NotFound, RecordFacts, Unweighed, Verdict, Withdrawn,
 };
 use crate::digits::{number, percent, rough, spaced};
 use crate::evaluate::Metrics;
@@ -39,10 +39,22 @@ pub fn look_alikes(finding: &Finding, cause: &Cause) -> Option<String> {
 
 pub(super) fn alternative(held: &[String], other: &Alternative) -> String {
     let name = phrase(&other.title, &other.effect, &other.into, other.of.as_deref(), other.site);
-    let sure = other.probability.map_or_else(String::new, |p| format!(" ({})", percent(p)));
+    let sure = match (other.probability, other.unweighed) {
+        (Some(p), _) => format!(" ({})", percent(p)),
+        (None, Some(Unweighed::SameModel)) => format!(" ({})", unweighed(other.unweighed)),
+        (None, _) => String::new(),
+    };
     // what the model holds may be wrong as well
     let held = if held.contains(&other.into) { ", which is held as right" } else { "" };
     format!("{name}{sure}{held}")
+}
+
+/// Why there is no probability.
+pub fn unweighed(why: Option<Unweighed>) -> &'static str {
+    match why {
+        Some(Unweighed::SameModel) => "the same model under another name",
+        _ => "not compared as a model",
+    }
 }
 
 /// `angle: test RMSE 0.03100 -> 0.004800 rad (fit 79.0 -> 96.8 %)`; one figure where no model was

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::diagnose::{
-    Alternative, ColumnFault, FoundShape, LawPart, Left, Note, Onset, RecordFacts, Site, Value,
-    Wording,
+    Alternative, ColumnFault, FoundShape, LawPart, Left, Note, Onset, RecordFacts, Site, Unweighed,
+    Value, Wording,
 };
 use crate::effect::Size;
 
@@ -245,12 +245,16 @@ fn what_is_fixed_is_named_and_may_be_the_cause() {
         of: Some("time".into()),
         error_removed: 0.5,
         probability: Some(0.25),
+        unweighed: None,
         title: "A drift".into(),
         site: Site::Drift,
     };
     let held = rest::alternative(&["m".into()], &drift);
     assert_eq!(held, "a drift of m (25 %), which is held as right");
     assert_eq!(rest::alternative(&[], &drift), "a drift of m (25 %)");
+    let twin = Alternative { probability: None, unweighed: Some(Unweighed::SameModel), ..drift };
+    let said = "a drift of m (the same model under another name)";
+    assert_eq!(rest::alternative(&[], &twin), said);
 }
 
 #[test]
@@ -281,16 +285,7 @@ fn notes_are_said() {
 #[test]
 fn look_alikes_by_title_and_place() {
     let other = |title: &str, site, into: &str, of: Option<&str>| {
-        let other = Alternative {
-            effect: "stribeck_friction".into(),
-            into: into.into(),
-            of: of.map(String::from),
-            error_removed: 0.5,
-            probability: None,
-            title: title.into(),
-            site,
-        };
-        phrase(&other.title, &other.effect, &other.into, other.of.as_deref(), other.site)
+        phrase(title, "stribeck_friction", into, of, site)
     };
     assert_eq!(other("A constant offset", Site::Output, "y", None), "a constant offset on y");
     assert_eq!(other("", Site::Channel, "force", Some("v")), "stribeck friction of v on force");

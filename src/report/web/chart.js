@@ -1,7 +1,7 @@
 // One interactive figure: uPlot draws axes and the cursor, draw.js what stands between them.
 
 /** Width of the axis along y, the same for all figures so that linked ones stand in line. */
-const AXIS = { wide: 70, narrow: 52 };
+const AXIS = { wide: 70, narrow: 62 };
 
 class Chart {
   /**
@@ -32,7 +32,7 @@ class Chart {
     const { figure, spec } = this;
     this.legend = add(figure, "div", "legend");
     this.position = add(this.legend, "span", "position");
-    this.entries = spec.items.map((item, i) => (item.label ? this.entry(item, i) : null));
+    this.entries = entriesOf(this);
     this.plot = add(figure, "div", "plot");
     this.plot.tabIndex = 0;
     this.plot.setAttribute("role", "group");
@@ -62,23 +62,6 @@ class Chart {
     gestures(this);
   }
 
-  /** The button that switches an item on and off, with its look and its value at the cursor. */
-  entry(item, i) {
-    const button = add(this.legend, "button", "entry");
-    button.type = "button";
-    button.setAttribute("aria-pressed", String(this.on[i]));
-    const mark = add(button, "canvas", "mark");
-    [mark.width, mark.height] = [56, 24];
-    mark.setAttribute("aria-hidden", "true");
-    add(button, "bdi", "", item.label);
-    const value = add(button, "output", "value");
-    button.addEventListener("click", () => {
-      this.toggle(i, !this.on[i]);
-      this.onToggle(item.label, this.on[i]);
-    });
-    return { button, mark, value };
-  }
-
   /** What the figure holds, for those who cannot see it. */
   inWords() {
     const parts = this.spec.items.filter((item) => item.label && item.x).map((item) => {
@@ -94,11 +77,13 @@ class Chart {
     const width = Math.max(240, this.plot.clientWidth);
     const narrow = width < 520;
     const font = "12px system-ui, sans-serif";
-    const axis = (label) => ({
+    const height = this.spec.height + (narrow ? -20 : 20);
+    const axis = (label, along) => ({
       label,
       labelSize: 18,
       labelGap: 0,
-      labelFont: "13px system-ui, sans-serif",
+      // a long label on a short axis is set smaller before it is cut off
+      labelFont: `${Math.max(9, Math.min(13, along / (0.56 * label.length))).toFixed(1)}px system-ui, sans-serif`,
       font,
       stroke: colours.ink,
       grid: { stroke: colours.rule, width: 1 },
@@ -111,16 +96,18 @@ class Chart {
     };
     const powers = (u, splits) => splits.map((v) => (v === null ? null : tick(v, v)));
     const names = this.spec.x.names;
-    const x = { ...axis(this.spec.x.label), size: 30 };
+    const x = { ...axis(this.spec.x.label, width), size: 30 };
     if (names?.length) {
       x.splits = () => names.map((_, i) => i + 1);
       x.values = () => names.map((name) => (narrow ? name.slice(0, 9) : name));
     } else x.values = this.logX ? powers : ticks;
-    const y = { ...axis(this.spec.y.label), size: narrow ? AXIS.narrow - 18 : AXIS.wide - 18, gap: 3 };
+    const y = { ...axis(this.spec.y.label, height - 56), size: narrow ? AXIS.narrow - 18 : AXIS.wide - 18, gap: 3 };
+    // a low figure has room for more than one number as well
+    if (this.spec.height < 160) y.space = 18;
     y.values = this.logY ? powers : ticks;
     const options = {
       width,
-      height: this.spec.height + (narrow ? -20 : 20),
+      height,
       legend: { show: false },
       padding: [8, 18, 0, 0],
       cursor: {
@@ -134,8 +121,9 @@ class Chart {
         sync: this.spec.link ? { key: this.spec.link, setSeries: false, filters: { sub: follows } } : undefined,
       },
       scales: {
-        x: { time: false, distr: this.logX ? 3 : 1, auto: false },
-        y: { distr: this.logY ? 3 : 1, auto: false },
+        // ranges are those that are asked for, not whole decades
+        x: { time: false, distr: this.logX ? 3 : 1, auto: false, range: (u, low, high) => [low, high] },
+        y: { distr: this.logY ? 3 : 1, auto: false, range: (u, low, high) => [low, high] },
       },
       axes: [x, y],
       series: [{}, { show: true, paths: () => null, points: { show: false } }],
@@ -149,16 +137,8 @@ class Chart {
     this.u?.destroy();
     this.u = new uPlot(options, data, this.plot);
     this.u.over.setAttribute("aria-hidden", "true");
-    this.marks();
+    drawMarks(this);
     this.apply();
-  }
-
-  /** Draws the looks into the legend. */
-  marks() {
-    this.spec.items.forEach((item, i) => {
-      const entry = this.entries[i];
-      if (entry) drawSample(entry.mark.getContext("2d"), item, this.colours[item.role]);
-    });
   }
 
   /** Draws the items between the axes. */
@@ -186,6 +166,7 @@ class Chart {
     });
     ctx.restore();
     this.figure.dataset.drawn = "yes";
+    this.figure.dataset.range = `${low} ${high}`;
   }
 
   /** Sets the ranges: the view along x, and along y what is switched on and within it. */

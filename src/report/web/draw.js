@@ -64,7 +64,7 @@ function drawLine(frame, item, look) {
       down = true;
     }
   }
-  if (to - from > box.width / ratio / 2) ctx.setLineDash([]);
+  if (to - from > box.width / ratio) ctx.setLineDash([]);
   ctx.stroke();
   // single samples, where they lie far enough apart to be seen as such
   const apart = box.width / ratio / Math.max(1, to - from);

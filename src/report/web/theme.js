@@ -10,6 +10,10 @@ const LOOKS = {
   free: { width: 1.3, dash: [], alpha: 1, marker: 0 },
   floor: { width: 1.6, dash: [2, 4], alpha: 1, marker: 0 },
   quiet: { width: 1.2, dash: [4, 4], alpha: 1, marker: 0 },
+  other1: { width: 2, dash: [9, 4], alpha: 1, marker: 0 },
+  other2: { width: 2, dash: [3, 3], alpha: 1, marker: 0 },
+  other3: { width: 2, dash: [10, 3, 2, 3], alpha: 1, marker: 0 },
+  other4: { width: 2, dash: [14, 3, 3, 3, 3, 3], alpha: 1, marker: 0 },
 };
 
 /** Colours of the page as they are now: by role, and `ink`, `soft`, `rule`, `card`. */
