@@ -15,6 +15,7 @@ mod study;
 use std::path::PathBuf;
 
 use clap::{Args as Arguments, Parser, Subcommand};
+use lacuna::diagnose::Memory;
 
 pub use columns::Columns;
 pub use diagnose::Diagnose;
@@ -280,6 +281,10 @@ pub struct Check {
     /// Probability of rejecting a model that is right
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
     pub level: f64,
+    /// Memory that it may take, such as 2GB or 512MiB; what does not fit is left out by rule and said
+    /// [default: half of the machine's]
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<Memory>,
 }
 
 #[derive(Debug, Clone, Arguments)]

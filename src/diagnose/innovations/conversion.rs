@@ -72,6 +72,7 @@ pub(super) fn finished(
             model: model.clone(),
             slots,
             first: None,
+            left_out: None,
             spikes: problem.spikes(),
             full: false,
             nothing: found.nothing,
@@ -85,6 +86,7 @@ pub(super) fn finished(
         y,
         // by the innovations, which are not at hand here
         dependence: 0.0,
+        undetermined: vec![],
         inside: Some(disturbances(of, &found.noise)),
     })
 }

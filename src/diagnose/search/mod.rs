@@ -24,6 +24,7 @@ mod fits;
 #[cfg(test)]
 pub(crate) mod fixture;
 mod laws;
+mod leading;
 mod metric;
 mod moves;
 mod nameless;
