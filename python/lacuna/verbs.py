@@ -176,10 +176,7 @@ def check(
     threads: Optional[int] = None,
     progress: Progress = None,
 ) -> Check:
-    """Asks whether records reject a model, at a level between 0 and 1.
-
-    ``memory`` is what it may take, such as ``"2GB"``; half of the machine's without it.
-    """
+    """Asks whether records reject a model, at a level between 0 and 1; ``memory`` as in ``diagnose``."""
     if not 0 < level < 1:
         raise CallError(f"level is {level}, and a probability between 0 and 1 is wanted")
     call = _Call("check", model, record, {k: v for k, v in locals().items() if k not in ("model", "record")})

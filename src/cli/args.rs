@@ -1,5 +1,6 @@
 //! What can be typed.
 
+mod check;
 mod columns;
 mod diagnose;
 mod estimate;
@@ -15,8 +16,8 @@ mod study;
 use std::path::PathBuf;
 
 use clap::{Args as Arguments, Parser, Subcommand};
-use lacuna::diagnose::Memory;
 
+pub use check::Check;
 pub use columns::Columns;
 pub use diagnose::Diagnose;
 pub use estimate::Estimate;
@@ -275,19 +276,6 @@ pub struct Plan {
 }
 
 #[derive(Debug, Clone, Arguments)]
-pub struct Check {
-    #[command(flatten)]
-    pub on: ModelAndData,
-    /// Probability of rejecting a model that is right
-    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = probability)]
-    pub level: f64,
-    /// Memory that it may take, such as 2GB or 512MiB; what does not fit is left out by rule and said
-    /// [default: half of the machine's]
-    #[arg(long, value_name = "SIZE")]
-    pub memory: Option<Memory>,
-}
-
-#[derive(Debug, Clone, Arguments)]
 pub struct Generate {
     /// System, excitation, noise and what is hidden (TOML or JSON)
     #[arg(long, value_name = "FILE")]
@@ -295,11 +283,4 @@ pub struct Generate {
     /// Folder for the records
     #[arg(long, value_name = "DIR", default_value = "lacuna-out")]
     pub out: PathBuf,
-}
-
-fn probability(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(level) if level > 0.0 && level < 1.0 => Ok(level),
-        _ => Err("a number between 0 and 1 is needed".into()),
-    }
 }

@@ -94,10 +94,11 @@ impl Context<'_, '_> {
         samples: &[usize],
     ) -> Option<Follows> {
         let n = sizes.len();
-        let all = [0..n];
+        let whole = 0..n;
+        let all = std::slice::from_ref(&whole);
         let nuisance = [vec![1.0; n]];
         let test = |tested: &[Vec<f64>]| {
-            let test = Regression { r: sizes, segments: &all, nuisance: &nuisance, tested };
+            let test = Regression { r: sizes, segments: all, nuisance: &nuisance, tested };
             test.test().map_or(1.0, |found| found.p_value)
         };
         let of = |series: &[f64]| -> Vec<f64> { samples.iter().map(|&k| series[k]).collect() };
@@ -131,9 +132,14 @@ impl Context<'_, '_> {
         let off: Vec<f64> =
             self.problem.y[o].iter().zip(&chosen.y[o]).map(|(a, b)| (a - b).abs()).collect();
         let alone = |&&k: &&usize| {
-            let near = k.saturating_sub(NEAR / 2)..(k + NEAR / 2 + 1).min(off.len());
-            let near = near.filter(|&j| j != k && self.problem.known[o][j]);
-            off[k] > BEYOND * ROBUST * median(&near.map(|j| off[j]).collect::<Vec<_>>())
+            let level = |near: std::ops::Range<usize>| {
+                let known = near.filter(|&j| self.problem.known[o][j]);
+                median(&known.map(|j| off[j]).collect::<Vec<_>>())
+            };
+            // a burst may begin or end here
+            let before = level(k.saturating_sub(NEAR / 2)..k);
+            let after = level(k + 1..(k + 1 + NEAR / 2).min(off.len()));
+            off[k] > BEYOND * ROBUST * before.max(after)
         };
         rows.iter().filter(alone).copied().collect()
     }

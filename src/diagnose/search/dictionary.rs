@@ -7,11 +7,12 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+pub(super) use super::item::{About, Item};
 use super::leading::Leading;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::probes::{Probe, Sharing, limit, steer};
 use crate::fit::found::LeftOut;
-use crate::fit::problem::{Grain, Model, Part, Problem, Span};
+use crate::fit::problem::{Grain, Part, Problem, Span};
 use crate::fit::step_size::ROUGH;
 use crate::memory::Memory;
 use crate::statistics::{deviation, dot, project, rms};
@@ -26,38 +27,6 @@ const POINTS: usize = 2;
 const GENTLE: (f64, f64) = (0.02, 0.5);
 const LARGE: f64 = 0.7;
 
-/// One grid point of a candidate.
-#[derive(Debug, Clone)]
-pub(super) struct Item {
-    /// Number among the candidates.
-    pub candidate: usize,
-    pub cause: Arc<Candidate>,
-    pub start: usize,
-    /// Sign that its first coefficient must have; 0: either.
-    pub sign: f64,
-    /// Effect of one unit of each coefficient on what is fitted, outputs one after the other.
-    pub columns: Vec<Vec<f64>>,
-    /// Coefficient of the probe.
-    pub probe: f64,
-}
-
-impl Item {
-    /// Whether its effect is a number everywhere.
-    pub fn is_finite(&self) -> bool {
-        self.columns.iter().flatten().all(|v| v.is_finite())
-    }
-
-    /// What its columns take.
-    pub fn bytes(&self) -> usize {
-        self.columns.iter().map(|column| 8 * column.len()).sum()
-    }
-
-    /// Candidate and grid point.
-    pub fn place(&self) -> (usize, usize) {
-        (self.candidate, self.start)
-    }
-}
-
 /// Spread of the outputs in units of their scales.
 pub(super) fn spread(problem: &Problem<'_>) -> f64 {
     let of = |o: usize| {
@@ -65,14 +34,6 @@ pub(super) fn spread(problem: &Problem<'_>) -> f64 {
         (deviation(&y) / problem.scale[o]).powi(2)
     };
     ((0..problem.y.len()).map(of).sum::<f64>() / problem.y.len().max(1) as f64).sqrt()
-}
-
-/// What is known about the model that candidates are probed about.
-pub(super) struct About<'a> {
-    pub model: &'a Model,
-    pub residual: &'a [f64],
-    /// What its own numbers can imitate, orthonormal.
-    pub basis: &'a [Vec<f64>],
 }
 
 /// Grid points, and the laws that memory did not hold.

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeSet;
 
-use super::dictionary::{About, Item};
+use super::item::{About, Item};
 use crate::statistics::{add_to_basis, dot, project};
 
 /// The best so far.

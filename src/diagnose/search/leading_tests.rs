@@ -20,7 +20,7 @@ fn items(r: &[f64]) -> Vec<Item> {
         let noise = series(10 + i as u64);
         let column: Vec<f64> = r.iter().zip(&noise).map(|(r, e)| r * i as f64 / 40.0 + e).collect();
         let mut columns = vec![column];
-        columns.extend((i % 4 == 0).then(|| series(100 + i as u64)));
+        columns.extend(i.is_multiple_of(4).then(|| series(100 + i as u64)));
         let cause = Arc::new(fixture::candidate(&format!("channel_{i}")));
         Item { candidate: i, cause, start: 0, sign: 0.0, columns, probe: 1.0 }
     };

@@ -23,6 +23,7 @@ mod dictionary;
 mod fits;
 #[cfg(test)]
 pub(crate) mod fixture;
+mod item;
 mod laws;
 mod leading;
 mod metric;
