@@ -2,7 +2,7 @@
 
 use crate::exam::plants::{HEATER, MSD, PENDULUM};
 use crate::exam::{Conditions, Plant, USUAL, hidden, names};
-use lacuna::data::Record;
+use lacuna::data::{Record, noise};
 use lacuna::diagnose::{Cause, Diagnosis, Finding, Verdict};
 
 const N: usize = 3000;
@@ -63,6 +63,24 @@ fn readings_that_are_cut_off() {
     assert_eq!(cause.rows.as_ref().unwrap(), &seen);
     assert_eq!(cause.parameters[0].value, top);
     assert_eq!(cause.indistinguishable[0].effect, "saturation");
+}
+
+/// A column of another record, and one that says nothing of two.
+#[test]
+fn readings_without_relation_to_the_machine() {
+    let mut record = innocent(&PENDULUM, 11);
+    record.outputs[0].values = innocent(&PENDULUM, 12).outputs.remove(0).values;
+    let finding = PENDULUM.diagnose(&record);
+    only_faults(&finding);
+    let cause = the(&finding, "unrelated");
+    assert_eq!((&cause.into[..], finding.causes.len()), ("angle", 1), "{finding}");
+    let mut record = innocent(&HEATER, 13);
+    let open = record.outputs.len() - 1;
+    let name = record.outputs[open].name.clone();
+    record.outputs[open].values = noise::white(N, 0.3, 14).unwrap();
+    let finding = HEATER.diagnose(&record);
+    only_faults(&finding);
+    assert_eq!(the(&finding, "unrelated").into, name);
 }
 
 #[test]

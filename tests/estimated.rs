@@ -1,6 +1,7 @@
 //! Estimates say what a record tells of each parameter, and what it does not.
 
 use lacuna::data::{Random, Record};
+use lacuna::diagnose::{Diagnosis, Note};
 use lacuna::estimate::estimate;
 use lacuna::file::{Format, parse};
 
@@ -25,6 +26,28 @@ fn record() -> Record {
         x = decay * x + 3.0 * (1.0 - decay) * force;
     }
     Record::new(0.1).input("u", u).unwrap().output("y", y).unwrap()
+}
+
+/// `diagnose` and `estimate` agree on what the record cannot tell.
+#[test]
+fn a_named_parameter_that_another_makes_up_for_has_no_error_bar_either() {
+    let system = parse(MODEL, "m.toml", Format::Toml).unwrap();
+    let diagnosis = Diagnosis::of(&system).only(&["parameter".into()]);
+    let finding = diagnosis.run(&[record()], None, &()).unwrap();
+    let named: Vec<_> = finding.in_the_machine().collect();
+    let product = named.iter().find(|cause| cause.into == "b" || cause.into == "c");
+    let product = product.unwrap_or_else(|| panic!("{finding}"));
+    assert_eq!(product.parameters[0].std_error, None, "{finding}");
+    let told = |note: &Note| match note {
+        Note::CannotTell { together } => together.contains("b by ") && together.contains("c by "),
+        _ => false,
+    };
+    assert!(finding.notes.iter().any(told), "{:?}", finding.notes);
+    // what the record tells has its error
+    for a in named.iter().filter(|cause| cause.into == "a") {
+        let error = a.parameters[0].std_error.unwrap();
+        assert!((a.parameters[0].value - 1.0).abs() < 4.0 * error, "{finding}");
+    }
 }
 
 #[test]

@@ -147,6 +147,50 @@ fn a_record_in_which_nothing_happens_is_said_to_be_one() {
     assert!(finding.not_found.iter().any(|cause| !cause.visible), "{:?}", finding.not_found);
 }
 
+/// A tenth more mass than the model holds: whatever is named, the mass is a look-alike of it.
+#[test]
+fn a_held_parameter_that_is_wrong_is_a_look_alike() {
+    let heavier = |a: f64, _: f64| -0.04 * 9.81 * 0.2 * a.sin();
+    let finding = diagnosed(&model(0.05), record(&heavier, 3000, 14), &["linear", "cubic"]);
+    let held = finding.notes.iter().find_map(|note| match note {
+        Note::Held { released, .. } => Some(released),
+        _ => None,
+    });
+    let held = held.unwrap_or_else(|| panic!("{:?}", finding.notes));
+    let mass = held.iter().find(|of| of.name == "m" && !of.drifts).unwrap();
+    assert!((mass.value - 0.44).abs() < 4.0 * mass.std_error.unwrap(), "{mass:?}");
+    assert_eq!(mass.stated, 0.4);
+    let text = sentences::summary(&finding);
+    assert!(text.contains("held as right") && text.contains("instead of 0.4"), "{text}");
+    // nothing is said of held parameters where nothing is wrong
+    let finding = diagnosed(&model(0.05), record(&NONE, 3000, 15), &["linear"]);
+    let held = |note: &Note| matches!(note, Note::Held { .. });
+    assert!(!finding.notes.iter().any(held), "{:?}", finding.notes);
+}
+
+/// Noise that grows with the arm's swing, and in the course of the record, is no list of outliers.
+#[test]
+fn noise_whose_level_changes_is_called_that() {
+    let u = torque(3000, 16);
+    let clean = angle(&u, &NONE);
+    let e = noise::white(u.len(), 1.0, 17).unwrap();
+    let size = |k: usize| 0.002 + 0.1 * clean[k].abs();
+    let grows = |k: usize| 0.002 + 0.03 * (k as f64 / 3000.0).powi(4);
+    let bursts = |k: usize| if (k / 100) % 10 == 3 { 0.03 } else { 0.004 };
+    let levels: [(&dyn Fn(usize) -> f64, &str); 3] =
+        [(&size, "with its size"), (&grows, "in the course"), (&bursts, "in bursts")];
+    for (level, words) in levels {
+        let y: Vec<f64> = (0..u.len()).map(|k| clean[k] + level(k) * e[k]).collect();
+        let record = Record::new(STEP).input("torque [N m]", u.clone()).unwrap();
+        let record = record.output("angle [rad]", y).unwrap();
+        let finding = diagnosed(&model(0.05), record, &["linear", "bias"]);
+        let text = sentences::summary(&finding);
+        assert_eq!(finding.verdict, Verdict::NothingFound, "{text}");
+        assert!(text.contains("changes its level") && text.contains(words), "{words}: {text}");
+        assert!(finding.causes.is_empty(), "{text}");
+    }
+}
+
 #[test]
 fn a_short_record_is_said_to_be_short() {
     let finding = diagnosed(&model(0.05), record(&NONE, 3000, 9).slice(0..39), &["parameter"]);

@@ -58,6 +58,13 @@ fault!(
 );
 fault!(Stuck, "stuck", "a reading that stands still", "A stuck reading", "The value it stands at.");
 fault!(
+    Unrelated,
+    "unrelated",
+    "a column that has nothing to do with the others",
+    "A column without relation",
+    "Mean of its readings."
+);
+fault!(
     Quantisation,
     "quantisation",
     "coarse steps of the converter",

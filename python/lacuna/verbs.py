@@ -168,6 +168,7 @@ def check(
     record: Union[RecordLike, Sequence[RecordLike]],
     *,
     level: float = 0.01,
+    memory: Optional[str] = None,
     inputs: Sequence[str] = (),
     outputs: Sequence[str] = (),
     rename: Optional[Mapping[str, str]] = None,
@@ -175,7 +176,7 @@ def check(
     threads: Optional[int] = None,
     progress: Progress = None,
 ) -> Check:
-    """Asks whether records reject a model, at a level between 0 and 1."""
+    """Asks whether records reject a model, at a level between 0 and 1; ``memory`` as in ``diagnose``."""
     if not 0 < level < 1:
         raise CallError(f"level is {level}, and a probability between 0 and 1 is wanted")
     call = _Call("check", model, record, {k: v for k, v in locals().items() if k not in ("model", "record")})
@@ -192,6 +193,7 @@ def diagnose(
     without: Sequence[str] = (),
     fix: Sequence[str] = (),
     max_causes: int = 5,
+    memory: Optional[str] = None,
     init: Optional[int] = None,
     sampling_time: Optional[float] = None,
     inputs: Sequence[str] = (),
@@ -208,7 +210,9 @@ def diagnose(
     A record is split by time, 70 % to fit and 30 % to choose; ``test`` is touched once, for
     scoring, and without it the last 20 % are kept for that. ``model=None`` estimates a linear
     model first and says what that gets wrong. ``only`` and ``without`` name effects, ``fix``
-    parameters. ``out`` is a folder for the files that the program writes.
+    parameters. ``memory`` is what it may take, such as ``"2GB"`` (half of the machine's without it);
+    what does not fit is left out by rule and said. ``out`` is a folder for the files that the
+    program writes.
     """
     title = "a linear model of the record"
     given = {k: v for k, v in locals().items() if k not in ("model", "record", "test", "out")}

@@ -82,7 +82,8 @@ fn answer(
         .only(&settings.only)
         .without(&settings.without)
         .fix(&settings.fix)
-        .init(settings.init());
+        .init(settings.init())
+        .memory(settings.memory()?);
     if let Some(most) = settings.max_causes {
         diagnosis = diagnosis.max_causes(most);
     }

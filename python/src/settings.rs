@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use lacuna::data::{Bare, Reading, Record};
+use lacuna::diagnose::Memory;
 use lacuna::evaluate::{Init, want};
 use lacuna::report::Provenance;
 use lacuna::system::System;
@@ -23,6 +24,8 @@ pub struct Settings {
     pub without: Vec<String>,
     pub fix: Vec<String>,
     pub max_causes: Option<usize>,
+    /// Memory that a diagnosis may take, as `2GB`.
+    pub memory: Option<String>,
     pub level: f64,
     pub order: Option<usize>,
     pub inputs: Vec<String>,
@@ -54,6 +57,12 @@ impl Settings {
     /// How initial states are found.
     pub fn init(&self) -> Init {
         self.init.map_or(Init::Forgotten, Init::Samples)
+    }
+
+    /// Memory that a diagnosis may take.
+    pub fn memory(&self) -> Result<Memory, Failure> {
+        let read = |text: &String| text.parse().map_err(Failure::call);
+        self.memory.as_ref().map_or(Ok(Memory::default()), read)
     }
 
     /// The records that a model wants.

@@ -96,9 +96,10 @@ pub fn linear(tables: Tables<'_>, settings: &str) -> PyResult<Job> {
 pub fn check(model: &Model, tables: Tables<'_>, settings: &str) -> PyResult<Job> {
     let settings = Settings::of(settings)?;
     let (records, remarks) = settings.records(&model.system, &all(&tables))?;
-    let (system, level) = (system_of(model), settings.level);
+    let (system, level, memory) = (system_of(model), settings.level, settings.memory()?);
     let work = move |watch: &crate::job::Shared| {
-        let checked = Diagnosis::of(&system).max_causes(1).check(&records, watch)?;
+        let diagnosis = Diagnosis::of(&system).max_causes(1).memory(memory);
+        let checked = diagnosis.check(&records, watch)?;
         let document = documents::goodness_of_fit(&checked, level)?.to_string();
         let p = checked.p_value.map(|p| number(p, None));
         let verdict = match p {

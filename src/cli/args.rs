@@ -1,5 +1,6 @@
 //! What can be typed.
 
+mod check;
 mod columns;
 mod diagnose;
 mod estimate;
@@ -17,6 +18,7 @@ use std::path::PathBuf;
 
 use clap::{Args as Arguments, Parser, Subcommand};
 
+pub use check::Check;
 pub use columns::Columns;
 pub use diagnose::Diagnose;
 pub use estimate::Estimate;
@@ -272,15 +274,6 @@ pub struct Plan {
     /// Parameters that are right
     #[arg(long, value_name = "PARAMETER", value_delimiter = ',', num_args = 1..)]
     pub fix: Vec<String>,
-}
-
-#[derive(Debug, Clone, Arguments)]
-pub struct Check {
-    #[command(flatten)]
-    pub on: ModelAndData,
-    /// Probability of rejecting a model that is right
-    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = estimate::probability)]
-    pub level: f64,
 }
 
 #[derive(Debug, Clone, Arguments)]

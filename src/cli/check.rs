@@ -21,7 +21,8 @@ pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
     let (system, want) = input::model(&args.on.model)?;
     let records = input::records(&args.on.data, &want, &args.on.columns, look)?;
     look.hear_interrupts()?;
-    let checked = Diagnosis::of(&system).max_causes(1).check(&records, look)?;
+    let diagnosis = Diagnosis::of(&system).max_causes(1).memory(args.memory.unwrap_or_default());
+    let checked = diagnosis.check(&records, look)?;
     look.clear();
     let rejected = checked.p_value.map(|p| p < args.level);
     let data_rejected = checked.rejects_data();
@@ -40,6 +41,9 @@ pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
     let of_the_model = first.filter(|cause| !checked.data_faults.contains(cause));
     for cause in checked.data_faults.iter().chain(of_the_model) {
         look.result(&sentences::cause(cause));
+    }
+    for note in &checked.notes {
+        look.result(&sentences::note(note));
     }
     let document = documents::goodness_of_fit(&checked, args.level).map_err(Failure::unwritable)?;
     look.document(&document);

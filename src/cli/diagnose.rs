@@ -86,6 +86,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
         .fix(&args.fix)
         .max_causes(args.max_causes)
         .sensor_noise_only(args.sensor_noise_only)
+        .memory(args.memory.unwrap_or_default())
         .init(input::init(args.init));
     let title = match &args.model {
         Some(path) => path.display().to_string(),

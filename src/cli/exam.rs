@@ -8,7 +8,7 @@ use super::failure::Failure;
 use super::outputs::{self, cannot_write};
 use super::study::exam::{configured, finish};
 use super::{input, provenance};
-use lacuna::diagnose::{Diagnosis, Watch};
+use lacuna::diagnose::{Diagnosis, Memory, Watch};
 use lacuna::file::{Document, read_regular, save_with, write_text};
 use lacuna::study::{Answer, Answers, Calibration, CaseFile, ExamResult, Written};
 
@@ -35,7 +35,9 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
             look.document(&serde_json::json!({ "schema": 1, "cases": cases, "written": written }));
             Ok(0)
         }
-        ExamVerb::Answer(args) => answer(&args.folder, &args.out, look),
+        ExamVerb::Answer(args) => {
+            answer(&args.folder, &args.out, args.memory.unwrap_or_default(), look)
+        }
         ExamVerb::Mark(args) => {
             outputs::check(&[&args.answers], &outputs::within(&args.out, &MARKS), look)?;
             let (result, open) = Written::read(&args.folder)?.mark(&args.folder, &args.answers)?;
@@ -54,7 +56,7 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
 }
 
 /// Answers every case of an exam that has no answer in the folder yet.
-fn answer(folder: &Path, out: &Path, look: &Console) -> Result<u8, Failure> {
+fn answer(folder: &Path, out: &Path, memory: Memory, look: &Console) -> Result<u8, Failure> {
     let exam = Written::read(folder)?;
     std::fs::create_dir_all(out).map_err(|error| cannot_write(out, &error))?;
     look.hear_interrupts()?;
@@ -67,7 +69,7 @@ fn answer(folder: &Path, out: &Path, look: &Console) -> Result<u8, Failure> {
         let path = out.join(format!("case{number}.json"));
         if !path.exists() {
             let extended = format!("case{number}.toml");
-            let answers = answer_one(&own, &out.join(&extended), extended, look)?;
+            let answers = answer_one(&own, &out.join(&extended), extended, memory, look)?;
             let text = serde_json::to_string_pretty(&answers).map_err(Failure::unwritable)? + "\n";
             write_text(&path, &text).map_err(|error| cannot_write(&path, &error))?;
         }
@@ -85,6 +87,7 @@ fn answer_one(
     case: &Path,
     extended: &Path,
     name: String,
+    memory: Memory,
     look: &Console,
 ) -> Result<Answers, Failure> {
     let path = case.join("case.json");
@@ -95,7 +98,8 @@ fn answer_one(
     let (system, want) = input::model(&case.join(&file.model))?;
     let records: Vec<_> = file.records.iter().map(|record| case.join(record)).collect();
     let records = input::records(&records, &want, &Columns::default(), look)?;
-    let finding = Diagnosis::of(&system).without(&file.without).run(&records, None, &())?;
+    let diagnosis = Diagnosis::of(&system).without(&file.without).memory(memory);
+    let finding = diagnosis.run(&records, None, &())?;
     save_with(&finding.extended, extended, &["Written by `lacuna exam answer`.".into()])?;
     let mut answer = Answer::of(file.case, &finding);
     answer.extended_model = Some(name);

@@ -3,6 +3,7 @@
 use super::candidates::library::Allowed;
 use crate::data::Record;
 use crate::evaluate::Init;
+use crate::memory::Memory;
 use crate::system::System;
 
 /// Share of the estimation data that is fitted; the rest chooses.
@@ -36,6 +37,7 @@ pub struct Diagnosis<'a> {
     pub(super) allowed: Allowed,
     pub(super) max_causes: usize,
     pub(super) init: Init,
+    pub(super) memory: Memory,
 }
 
 impl<'a> Diagnosis<'a> {
@@ -46,7 +48,13 @@ impl<'a> Diagnosis<'a> {
 
     /// A diagnosis of a system with the whole library and at most five causes.
     pub fn of(system: &'a System) -> Self {
-        Self { system, allowed: Allowed::default(), max_causes: 5, init: Init::default() }
+        Self {
+            system,
+            allowed: Allowed::default(),
+            max_causes: 5,
+            init: Init::default(),
+            memory: Memory::default(),
+        }
     }
 
     /// Looks only for these effects.
@@ -81,6 +89,15 @@ impl<'a> Diagnosis<'a> {
     #[must_use]
     pub fn init(mut self, init: Init) -> Self {
         self.init = init;
+        self
+    }
+
+    /// Takes no more memory than about this, the records themselves included; half of the machine's
+    /// without it. What does not fit is left out by rule, and the finding has a note of it: laws that
+    /// explain least of what is left, the middle of stretches of a record of millions of samples.
+    #[must_use]
+    pub fn memory(mut self, memory: Memory) -> Self {
+        self.memory = memory;
         self
     }
 

@@ -35,7 +35,8 @@ impl<'a, 'b> Tracks<'a, 'b> {
         let track = if free { Track::ParametersFree } else { Track::ParametersTrusted };
         let chosen = self.finish(track, found, nuisance)?;
         let chosen = self.off_the_ridge(chosen)?;
-        Some(self.doubting(chosen))
+        let undetermined = self.undetermined(&chosen);
+        Some(self.doubting(Finished { undetermined, ..chosen }))
     }
 
     /// A model fitted to all data, and its outputs.
@@ -87,6 +88,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
             moved_along_ridge,
             y,
             dependence,
+            undetermined: vec![],
             inside: None,
         };
         let mut moved = finished.went(&self.problem.base.signals);

@@ -49,6 +49,7 @@ fn what_diverges_in_the_end_loses_its_last_cause() {
         model,
         slots,
         first: None,
+        left_out: None,
         spikes: vec![vec![]],
         full: false,
         nothing: 0.0,

@@ -1,8 +1,8 @@
 //! Finds what a simulation gets wrong, names it and measures the gain.
 
 use lacuna_core::{
-    data, digits, effect, evaluate, fault, model, optimise, real, register, statistics, system,
-    watch,
+    data, digits, effect, evaluate, fault, look, model, optimise, real, register, statistics,
+    system, watch,
 };
 use lacuna_estimate as estimate;
 use lacuna_likelihood as likelihood;
@@ -19,6 +19,7 @@ mod final_fit;
 mod findings;
 mod fit;
 mod innovations;
+mod memory;
 mod mended;
 mod plan;
 mod prepare;
@@ -43,10 +44,11 @@ pub use findings::finding::{
     FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores,
     SingleRecord, Verdict,
 };
-pub use findings::note::{Disturbance, Disturbs, Note};
+pub use findings::note::{Disturbance, Disturbs, Follows, Note, Released};
 pub use findings::per_record::InRecord;
 pub use findings::series::{Curve, OtherLaw, Series, TestSeries};
 pub use fit::hypothesis::{Moved, Track};
+pub use memory::Memory;
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
 pub use validate::goodness_of_fit::GoodnessOfFit;
 pub use validate::noise_floor::NoiseFloor;

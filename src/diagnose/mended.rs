@@ -1,7 +1,7 @@
 //! Data preprocessing before a search: gross errors, dead sensors, dropouts, readings that stand
 //! still, columns of the wrong sign (Ljung, System Identification, 1999, chapter 14).
 
-use super::data_faults::{Fault, dead, flipped, gross_errors, retimed, strike};
+use super::data_faults::{Fault, dead, flipped, gross_errors, retimed, strike, unrelated};
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
 use super::findings::cause::Cause;
@@ -37,7 +37,8 @@ impl Diagnosis<'_> {
             .unzip();
         let (mut clean, mut faults) = (clean, gross.concat());
         let mut test = test.map(|record| gross_errors(record, 0).0);
-        let silent = dead(self.system, &clean)?;
+        let mut silent = dead(self.system, &clean)?;
+        silent.extend(unrelated(self.system, &clean, &silent)?);
         let outputs = self.system.signals().outputs;
         let measured = |name: &String| clean.iter().any(|r| r.signal(name).is_some());
         let blind = !silent.is_empty()

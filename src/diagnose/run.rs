@@ -13,7 +13,8 @@ use super::innovations;
 use super::mended::Mended;
 use super::prepare::integration_error::unresolved;
 use super::prepare::joined_records::firsts;
-use super::prepare::prepared::{Prepared, windows};
+use super::prepare::prepared::Prepared;
+use super::prepare::windows::{thinned, windows};
 use super::segmentation::horizon;
 use super::validate::overlap::refuse_overlap;
 use super::validate::test_error::{Counted, TestData};
@@ -22,7 +23,7 @@ use crate::evaluate::{EvaluateError, Init, Run};
 use crate::watch::Watch;
 
 impl Diagnosis<'_> {
-    fn check_names(&self) -> Result<(), DiagnoseError> {
+    pub(super) fn check_names(&self) -> Result<(), DiagnoseError> {
         let registered = crate::register::effects().into_iter().map(|(card, _)| card.name);
         let written = self.system.written.iter().map(crate::effect::WrittenEffect::name);
         let known: Vec<&str> = registered.chain(written).collect();
@@ -55,11 +56,28 @@ impl Diagnosis<'_> {
         test: Option<&Record>,
         watch: &dyn Watch,
     ) -> Result<Finding, DiagnoseError> {
-        let started = Instant::now();
         self.check_names()?;
         if let Some(test) = test {
             refuse_overlap(records, test)?;
         }
+        let Some(thin) = thinned(self.system, records, test, self.memory) else {
+            return self.run_on(records, test, watch);
+        };
+        let mut finding = self.run_on(&thin.records, thin.test.as_ref(), watch)?;
+        let alone = finding.single_records.iter_mut().map(|alone| &mut alone.cause);
+        finding.causes.iter_mut().chain(alone).for_each(|cause| thin.place(cause));
+        finding.notes.insert(0, thin.note);
+        Ok(finding)
+    }
+
+    /// The same on records that memory holds.
+    pub(super) fn run_on(
+        &self,
+        records: &[Record],
+        test: Option<&Record>,
+        watch: &dyn Watch,
+    ) -> Result<Finding, DiagnoseError> {
+        let started = Instant::now();
         for record in records {
             self.check_baseline(record)?;
         }
@@ -161,13 +179,13 @@ impl Diagnosis<'_> {
                 (&kept[..], test, FIT_OF_ALL / (1.0 - TEST_OF_ALL))
             }
         };
-        let mut whole = Prepared::new(self.system, used, share)?;
+        let mut whole = Prepared::new(self.system, used, share)?.within(self.memory);
         let windows = windows(used);
         let mut looked_at = None;
         let (chosen, other) = match &windows {
             None => innovations::search(&mut whole, &self.allowed, most, watch)?,
             Some(windows) => {
-                let mut part = Prepared::new(self.system, windows, share)?;
+                let mut part = Prepared::new(self.system, windows, share)?.within(self.memory);
                 let (chosen, other) = innovations::search(&mut part, &self.allowed, most, watch)?;
                 looked_at = Some(part);
                 watch.tell(0.95, "fitting to all samples");

@@ -76,7 +76,8 @@ impl Diagnosis<'_> {
         };
         let step = first.sampling_time;
         let count = stretches.len();
-        let mut prepared = Prepared::in_stretches(self.system, &stretches, FIT)?;
+        let mut prepared =
+            Prepared::in_stretches(self.system, &stretches, FIT)?.within(self.memory);
         let chosen = prepared.search(&self.allowed, self.max_causes, watch)?;
         watch.tell(0.97, "measuring the gain");
         let test = TestData { records: tested, counted: Counted::All };

@@ -20,5 +20,5 @@ pub use self::{
     fit::{estimate_by, estimate_with},
     linear::Mode,
     linear::{LinearParameter, linear_baseline, linear_with},
-    rank::Combination,
+    rank::{Combination, unseen},
 };

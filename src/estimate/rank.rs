@@ -19,7 +19,7 @@ const MINOR: f64 = 0.05;
 
 /// Combinations of parameters along which the outputs do not change, from the derivatives of
 /// the residuals by relative changes of the parameters (columns of equal length).
-pub(crate) fn unseen(names: &[String], columns: &[Vec<f64>]) -> Vec<Combination> {
+pub fn unseen(names: &[String], columns: &[Vec<f64>]) -> Vec<Combination> {
     let n = columns.len();
     if n == 0 {
         return vec![];

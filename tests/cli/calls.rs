@@ -41,6 +41,8 @@ fn calls_that_cannot_be_understood() {
         (format!("check {both} --level 2"), &["--level", "between 0 and 1"]),
         (format!("check {both} --level 0"), &["--level", "between 0 and 1"]),
         (format!("diagnose {both} --max-causes 0"), &["--max-causes", "1 or above"]),
+        (format!("diagnose {both} --memory plenty"), &["--memory", "2GB or 512MiB"]),
+        (format!("check {both} --memory 1MB"), &["--memory", "at least 64MiB"]),
         ("completions fsh".into(), &["fsh", "fish"]),
     ] {
         refused(&folder, &line, "call", NOWHERE, words);

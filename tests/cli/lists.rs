@@ -56,6 +56,7 @@ fn models_and_effects_with_parameters_and_units() {
         "dropout",
         "clipping",
         "stuck",
+        "unrelated",
         "quantisation",
         "time_shift",
         "swapped_sign",

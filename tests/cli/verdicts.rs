@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use lacuna::data::noise;
 use serde_json::Value;
 
 use super::{MODEL, record, run, scratch};
@@ -49,6 +50,42 @@ fn a_sensor_that_says_one_number_throughout_is_dead_and_no_physics() {
         let checked = run(&folder, "check --model m.toml --data dead.csv --json").exits(4).json();
         assert_eq!(faults(&checked), ["stuck"], "{checked:#}");
     }
+}
+
+/// An output that has no relation to the input: one level with noise, or another record's.
+#[test]
+fn a_column_that_has_nothing_to_do_with_the_machine_is_no_physics() {
+    let folder = folder("unrelated");
+    let noise = noise::white(800, 0.05, 5).unwrap();
+    measured(&folder, "open.csv", |k, _| 2.5 + noise[k]);
+    let line = "diagnose --model m.toml --data open.csv --out found --json";
+    let document = run(&folder, line).exits(0).json();
+    let causes = document["causes"].as_array().unwrap();
+    assert_eq!(causes.len(), 1, "{document:#}");
+    assert_eq!(causes[0]["effect"], "unrelated", "{document:#}");
+    assert!(causes[0]["p_value"].as_f64().unwrap() < 1e-6, "{document:#}");
+    let said = causes[0]["sentence"].as_str().unwrap();
+    assert!(said.contains("is not connected: it reads 2."), "{said}");
+    let checked = run(&folder, "check --model m.toml --data open.csv --json").exits(4).json();
+    assert_eq!(faults(&checked), ["unrelated"], "{checked:#}");
+    // weak, but there: one part in five of what is read is the machine
+    measured(&folder, "weak.csv", |k, y| y + 10.0 * noise[k]);
+    let checked = run(&folder, "check --model m.toml --data weak.csv --json").exits(0).json();
+    assert_eq!(faults(&checked), [""; 0], "{checked:#}");
+}
+
+#[test]
+fn a_record_that_memory_does_not_hold_is_looked_at_in_stretches() {
+    let folder = scratch("stretches");
+    fs::write(folder.join("m.toml"), MODEL).unwrap();
+    record(&folder, "d.csv", "m.toml", 100_000, 0.05);
+    let line = "check --model m.toml --data d.csv --memory 64MiB --json";
+    let checked = run(&folder, line).exits(0).json();
+    let remarks = checked["remarks"].as_array().unwrap();
+    let said = remarks[0].as_str().unwrap();
+    assert!(said.starts_with("Of 100000 samples ") && said.contains("3 stretches"), "{said}");
+    let whole = run(&folder, "check --model m.toml --data d.csv --memory 4GB --json").exits(0);
+    assert!(whole.json()["remarks"].is_null());
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args as Arguments;
 
 use super::{Columns, positive};
+use lacuna::diagnose::Memory;
 
 #[derive(Debug, Clone, Arguments)]
 pub struct Diagnose {
@@ -41,6 +42,10 @@ pub struct Diagnose {
     /// Causes at most
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = positive)]
     pub max_causes: usize,
+    /// Memory that it may take, such as 2GB or 512MiB; what does not fit is left out by rule and said
+    /// [default: half of the machine's]
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<Memory>,
     /// Simulates what was found so many times with noise like the record's, diagnoses each, and says
     /// how often this record would mislead [default: not at all]
     #[arg(long, value_name = "N", default_value_t = 0)]

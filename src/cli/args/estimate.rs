@@ -40,11 +40,3 @@ pub(super) fn seconds(text: &str) -> Result<f64, String> {
         _ => Err("a positive number of seconds is needed".into()),
     }
 }
-
-/// A probability, neither impossible nor certain.
-pub fn probability(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(level) if level > 0.0 && level < 1.0 => Ok(level),
-        _ => Err("a number between 0 and 1 is needed".into()),
-    }
-}

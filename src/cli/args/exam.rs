@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as Arguments, Subcommand};
+use lacuna::diagnose::Memory;
 
 #[derive(Debug, Clone, Arguments)]
 pub struct Exam {
@@ -53,6 +54,10 @@ pub struct Answer {
     /// Folder for the answers, one file a case; what is there is not done again
     #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = super::folder::folder())]
     pub out: PathBuf,
+    /// Memory that it may take, such as 2GB or 512MiB; what does not fit is left out by rule and said
+    /// [default: half of the machine's]
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<Memory>,
 }
 
 #[derive(Debug, Clone, Arguments)]

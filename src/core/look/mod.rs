@@ -76,6 +76,13 @@ pub struct Period {
     pub noise: Vec<f64>,
 }
 
+/// Coherence of every output of a record with all inputs together; `level` is the chance, over all
+/// frequencies, at which unrelated signals have a band.
+#[doc(hidden)]
+pub fn coherences(record: &Record, level: f64) -> Vec<Coherence> {
+    spectra::Spectra::of(record).coherences(record, level)
+}
+
 impl Look {
     /// Looks at a record.
     pub fn of(record: &Record) -> Self {
@@ -91,7 +98,7 @@ impl Look {
             sampling_time: record.sampling_time,
             start: record.start,
             segments: record.segments.len(),
-            coherences: spectra.coherences(record),
+            coherences: spectra.coherences(record, spectra::LEVEL),
             responses: lags::responses(record),
             period: Period::of(record),
             drawn: page::Drawn::of(record, &spectra),

@@ -20,7 +20,7 @@ const LONGEST: usize = 8192;
 /// Share of pieces that half an overlap leaves independent.
 const INDEPENDENT: f64 = 0.947;
 /// Chance, over all lines, at which noise stands out, or unrelated signals are coherent.
-const LEVEL: f64 = 0.01;
+pub(super) const LEVEL: f64 = 0.01;
 /// Lines on either side that a line is compared with.
 const SURROUNDINGS: usize = 12;
 /// Inputs whose coherence together is looked at.
@@ -199,7 +199,7 @@ impl Spectra {
     }
 
     /// Coherence of every output with all inputs together.
-    pub fn coherences(&self, record: &Record) -> Vec<Coherence> {
+    pub fn coherences(&self, record: &Record, level: f64) -> Vec<Coherence> {
         let inputs: Vec<usize> = (0..record.inputs.len())
             .filter(|&i| self.density(i).iter().skip(1).sum::<f64>() > 0.0)
             .collect();
@@ -210,7 +210,7 @@ impl Spectra {
         }
         let free = pieces - m as f64;
         let bound = Beta::new(m as f64, free)
-            .map_or(1.0, |beta| beta.inverse_cdf(1.0 - LEVEL / self.frequency.len() as f64));
+            .map_or(1.0, |beta| beta.inverse_cdf(1.0 - level / self.frequency.len() as f64));
         let outputs = record.outputs.iter().enumerate();
         outputs
             .map(|(o, output)| {

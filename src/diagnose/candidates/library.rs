@@ -59,6 +59,10 @@ pub(crate) fn library(
     let sources = builder.sources();
     let registered = register::effects().into_iter().map(|(card, shape)| (card.name, shape));
     let written = problem.system.written.iter().map(|own| (own.name(), own.boxed()));
+    let is_free = |p: usize| {
+        let parameter = &problem.base.signals.parameters[p];
+        !parameter.fixed && !allowed.fixed.contains(&parameter.name)
+    };
     for (name, shape) in registered.chain(written) {
         if !allowed.effect(name) {
             continue;
@@ -68,7 +72,7 @@ pub(crate) fn library(
             continue;
         }
         if declared.places.parameter {
-            builder.parameters(name, shape.as_ref(), &declared, model, allowed);
+            builder.parameters(name, shape.as_ref(), &declared, model, &is_free);
         }
         builder.paths(name, shape.as_ref(), &declared);
         if declared.places.channel {

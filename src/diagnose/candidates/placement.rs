@@ -1,7 +1,7 @@
 //! Where each effect may sit in a model: parameters, paths, channels, beside.
 
 use crate::candidates::candidate::{Candidate, Preference, Wire};
-use crate::candidates::library::{Allowed, Builder, Spot};
+use crate::candidates::library::{Builder, Spot};
 use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Needs};
 use crate::fit::problem::Model;
 use crate::system::{AlsoInto, Origin};
@@ -13,12 +13,12 @@ impl Builder<'_, '_> {
         shape: &dyn CandidateEffect,
         card: &EffectCard,
         model: &Model,
-        allowed: &Allowed,
+        wanted: &dyn Fn(usize) -> bool,
     ) {
         let signals = &self.problem.base.signals;
         let duration = self.problem.len() as f64 * self.problem.base.sampling_time;
         for (p, parameter) in signals.parameters.iter().enumerate() {
-            if parameter.fixed || allowed.fixed.contains(&parameter.name) {
+            if !wanted(p) {
                 continue;
             }
             let value = model.theta[p];

@@ -107,7 +107,7 @@ pub(crate) fn steer(
     for attempt in 0..ATTEMPTS {
         let open: Vec<usize> =
             (0..probes.len()).filter(|&i| !probes[i].done && !probes[i].failed).collect();
-        for chunk in open.chunks(CHUNK) {
+        for chunk in open.chunks(CHUNK.min(problem.at_once(Span::Fit))) {
             let mut jobs = vec![];
             let mut of = vec![];
             for &i in chunk {

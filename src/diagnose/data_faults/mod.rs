@@ -5,6 +5,7 @@ mod column;
 mod dead;
 mod equal_readings;
 mod rows;
+mod unrelated;
 
 use std::collections::BTreeMap;
 
@@ -18,6 +19,7 @@ pub(crate) use column::{flipped, retimed};
 pub(crate) use dead::dead;
 pub(crate) use equal_readings::{Stretch, stretches};
 pub(crate) use rows::{gross_errors, strike};
+pub(crate) use unrelated::unrelated;
 
 /// Share of the noise that rounding makes, to be worth a word.
 const COARSE: f64 = 0.5;
@@ -47,6 +49,9 @@ pub(crate) enum FaultKind {
     Stuck(f64),
     /// It stood still throughout.
     Dead(f64),
+    /// It has nothing to do with the machine: mean and deviation of its readings, whether these are one
+    /// level with noise, and the probability of them if they were what the model says.
+    Unrelated { level: f64, noise: f64, is_level: bool, p_value: f64 },
     /// Readings that lie farther from all others than those from each other; the first one.
     Gross(f64),
     /// Readings cut off at a limit.
@@ -66,6 +71,7 @@ impl FaultKind {
         match self {
             Self::Dropout(_) => "dropout",
             Self::Stuck(_) | Self::Dead(_) => "stuck",
+            Self::Unrelated { .. } => "unrelated",
             Self::Gross(_) => "outliers",
             Self::Clipping(_) => "clipping",
             Self::Quantisation { .. } => "quantisation",
@@ -86,6 +92,9 @@ impl Fault {
             }
             FaultKind::Stuck(value) => (ColumnFault::Stuck(value), Some((value, unit.as_str()))),
             FaultKind::Dead(value) => (ColumnFault::Dead(value), Some((value, unit.as_str()))),
+            FaultKind::Unrelated { level, noise, is_level, .. } => {
+                (ColumnFault::Unrelated { level, noise, is_level }, Some((level, unit.as_str())))
+            }
             FaultKind::Gross(value) => (ColumnFault::Gross(value), Some((value, unit.as_str()))),
             FaultKind::Clipping(limit) => (ColumnFault::Clipping, Some((limit, unit.as_str()))),
             FaultKind::Quantisation { step, over_noise } => {
@@ -107,6 +116,10 @@ impl Fault {
         Cause {
             error_removed: self.removed,
             indistinguishable: self.or_in.iter().map(other).collect(),
+            p_value: match self.kind {
+                FaultKind::Unrelated { p_value, .. } => Some(p_value),
+                _ => None,
+            },
             ..of_column(self.kind.effect(), &self.into, fault, parameters, rows)
         }
     }

@@ -15,6 +15,8 @@ const FINE: f64 = 0.9;
 const CHANCE: f64 = 1e-4;
 /// Samples on either side of a value that tell how dense the readings lie there.
 const NEAR: usize = 50;
+/// Samples on either side that tell how finely values are written there.
+const WRITTEN: usize = 1000;
 /// Different values that a reading has at least, to be judged by equal ones.
 const VALUES: usize = 30;
 /// Equal readings in a row that are one that stands still, at least.
@@ -45,10 +47,9 @@ fn dropouts(y: &[f64]) -> Option<(f64, Vec<usize>)> {
     // a fine scale does not meet a value inside its range time and again by chance
     let (sorted, (low, high)) = (sorted(y), range(y));
     let fine = different(&sorted) as f64 > FINE * y.len() as f64;
-    let finest = finest(&sorted);
     let often = |same: &[&Stretch]| {
         let (value, count) = (same[0].value, same.len());
-        fine && value > low && value < high && by_chance(&sorted, finest, value, count) < CHANCE
+        fine && value > low && value < high && by_chance(&sorted, value, count) < CHANCE
     };
     let mut all: Vec<&Stretch> = all.iter().collect();
     all.sort_by(|a, b| a.value.total_cmp(&b.value));
@@ -68,11 +69,14 @@ fn dropouts(y: &[f64]) -> Option<(f64, Vec<usize>)> {
 }
 
 /// How many values a series is expected to meet `count` times, as it lies near `value` and as
-/// finely as it is written: `step` is the finest one.
-fn by_chance(sorted: &[f64], step: f64, value: f64, count: usize) -> f64 {
+/// finely as it is written there: numbers of so many digits stand closer near 0.
+fn by_chance(sorted: &[f64], value: f64, count: usize) -> f64 {
     let (from, to) =
         (sorted.partition_point(|v| *v < value), sorted.partition_point(|v| *v <= value));
-    let (low, high) = (from.saturating_sub(NEAR), (to + NEAR).min(sorted.len()));
+    let around = |many: usize| (from.saturating_sub(many), (to + many).min(sorted.len()));
+    let (low, high) = around(WRITTEN);
+    let step = finest(&sorted[low..high]);
+    let (low, high) = around(NEAR);
     let (others, width) = ((from - low) + (high - to), sorted[high - 1] - sorted[low]);
     let mean = others as f64 * step / width.max(step);
     // the chance that at least count - 1 more samples lie on a sample's value (Poisson)
@@ -253,6 +257,17 @@ mod tests {
         let rows: Vec<usize> = (0..12).map(|k| 100 + 200 * k).collect();
         rows.iter().for_each(|&k| y[k] = 1.5);
         assert_eq!(dropouts(&y), Some((1.5, rows)));
+    }
+
+    /// Six significant digits, in a record so long that many values come again.
+    #[test]
+    fn equal_readings_of_a_long_record_are_no_dropouts() {
+        let mut random = Random::new(7);
+        let six = |y: f64| format!("{y:.5e}").parse::<f64>().unwrap();
+        let y: Vec<f64> = (0..200_000)
+            .map(|k| six(0.1 * (f64::from(k) * 0.01).sin() + 0.03 * random.normal()))
+            .collect();
+        assert_eq!(dropouts(&y), None);
     }
 
     #[test]

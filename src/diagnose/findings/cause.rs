@@ -143,6 +143,15 @@ pub enum ColumnFault {
     Stuck(f64),
     /// Every reading is this value, while the model says that the machine moves.
     Dead(f64),
+    /// The readings have nothing to do with inputs, simulation and other outputs.
+    Unrelated {
+        /// Their mean.
+        level: f64,
+        /// Their standard deviation.
+        noise: f64,
+        /// Whether they are one level with white noise, as of a sensor that is not connected.
+        is_level: bool,
+    },
     /// Readings that lie farther from all others than those from each other; the first of them.
     Gross(f64),
     /// The converter has coarse steps: the step, and the rounding error's standard deviation over that

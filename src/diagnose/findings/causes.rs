@@ -11,6 +11,7 @@ use crate::findings::cause::{
     Alternative, Cause, ColumnFault, LawPart, Site, Unweighed, Value, Wording,
 };
 use crate::findings::context::Context;
+use crate::findings::note::Note;
 use crate::fit::finished::Finished;
 use crate::fit::found::SET;
 use crate::fit::nuisance::Key;
@@ -184,7 +185,7 @@ impl Context<'_, '_> {
             return vec![Value {
                 name: "value".into(),
                 value: chosen.fitted.model.theta[p] + knobs[0],
-                std_error: error(0),
+                std_error: chosen.error_of(&cause.into, error(0)),
                 unit: cause.units.0.clone(),
             }];
         }
@@ -213,9 +214,17 @@ impl Context<'_, '_> {
     }
 
     /// Spikes, where there are too many to be chance.
-    pub fn outliers(&self, chosen: &Finished, firsts: &[usize]) -> Vec<Cause> {
+    pub fn outliers(
+        &self,
+        chosen: &Finished,
+        firsts: &[usize],
+        levels: &[Option<Note>],
+    ) -> Vec<Cause> {
         let mut causes = vec![];
         for (o, rows) in chosen.found.spikes.iter().enumerate() {
+            let changes = levels.get(o).is_some_and(Option::is_some);
+            let far = changes.then(|| self.far_from_near(chosen, o, rows));
+            let rows = far.as_ref().unwrap_or(rows);
             let share = rows.len() as f64 / self.problem.len().max(1) as f64;
             if rows.len() < SPIKES || share <= SPIKE_SHARE {
                 continue;

@@ -1,5 +1,7 @@
 //! What else a diagnosis has to say, as data; `report` makes sentences of it.
 
+use crate::memory::Memory;
+
 /// One thing worth knowing beside the causes.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Note {
@@ -11,6 +13,30 @@ pub enum Note {
         seconds: f64,
         /// Stretches used.
         count: usize,
+    },
+    /// The records are longer than memory holds: stretches of them were looked at.
+    Thinned {
+        /// Samples looked at.
+        samples: usize,
+        /// Samples there are.
+        of: usize,
+        /// Stretches.
+        stretches: usize,
+        /// Memory that was allowed.
+        memory: Memory,
+        /// Memory that all samples would take, about.
+        whole: Memory,
+    },
+    /// Memory did not hold the effects of all laws side by side.
+    LawsLeftOut {
+        /// Laws that were judged alone only.
+        laws: usize,
+        /// Laws there are.
+        of: usize,
+        /// Memory that was allowed.
+        memory: Memory,
+        /// Memory that all laws would take, about.
+        whole: Memory,
     },
     /// What the simulation leaves of an output is no more than its own error, of the integrator and
     /// of rounding.
@@ -75,6 +101,35 @@ pub enum Note {
         /// The coordinate.
         of: Option<String>,
     },
+    /// A parameter that is held explains what is named as well, or better.
+    Held {
+        /// Which, and what each of them alone would be.
+        released: Vec<Released>,
+        /// Logarithm of the odds of the best of them against what is named.
+        odds: f64,
+        /// Causes that are named.
+        named: usize,
+    },
+    /// The noise of an output is not of one level.
+    NoiseLevel {
+        /// The output.
+        output: String,
+        /// Its standard deviation where it is low, and where it is high.
+        low: f64,
+        /// See `low`.
+        high: f64,
+        /// Unit of both.
+        unit: String,
+        /// What the level follows.
+        follows: Follows,
+        /// Samples without weight, far beyond the usual level.
+        left_out: usize,
+    },
+    /// Parameters of which the record tells less than all: what they can do together unseen, in words.
+    CannotTell {
+        /// `changing b by +1.00 x, c by -1.00 x together changes nothing that was measured`.
+        together: String,
+    },
     /// Parameters that are named make up for each other.
     ParametersMakeUp {
         /// Share of the removable error that all remove together.
@@ -96,6 +151,34 @@ pub enum Note {
         /// Share of what is left that it predicts where it was not fitted.
         share: f64,
     },
+}
+
+/// What the level of a noise follows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Follows {
+    /// Time: it grows or falls in the course of the record.
+    Time,
+    /// The size of a signal.
+    Signal(String),
+    /// Itself: it comes in bursts.
+    Itself,
+}
+
+/// A held parameter that was let go.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Released {
+    /// Its name.
+    pub name: String,
+    /// Its value, or how fast it changes.
+    pub value: f64,
+    /// Standard error of that.
+    pub std_error: Option<f64>,
+    /// Value in the model.
+    pub stated: f64,
+    /// Unit of `value`.
+    pub unit: String,
+    /// Whether it changes in the course of the record.
+    pub drifts: bool,
 }
 
 /// Noise that is not the white noise of a sensor.

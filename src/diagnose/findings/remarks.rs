@@ -6,6 +6,7 @@ use crate::findings::context::Context;
 use crate::findings::finding::NotFound;
 use crate::findings::note::Note;
 use crate::fit::finished::Finished;
+use crate::fit::found::LeftOut;
 use crate::fit::hypothesis::Track;
 use crate::fit::problem::Part;
 use crate::plan::natural;
@@ -60,9 +61,15 @@ impl Context<'_, '_> {
         if model.added.len() > 1 {
             notes.push(Note::JointLookAlikes);
         }
+        if let Some(LeftOut { laws, of, whole }) = chosen.found.left_out {
+            let memory = self.problem.memory;
+            notes.push(Note::LawsLeftOut { laws, of, memory, whole });
+        }
         if chosen.found.full {
             notes.push(Note::MostCauses);
         }
+        let undetermined = chosen.undetermined.iter().map(|combination| combination.text.clone());
+        notes.extend(undetermined.map(|together| Note::CannotTell { together }));
         if chosen.is_doubting() {
             notes.push(Note::AllParametersDoubted { prior: crate::fit::nuisance::PRIOR });
         }

@@ -62,10 +62,12 @@ impl Context<'_, '_> {
             several,
         };
         let mut causes = self.causes(chosen, &by)?;
+        let held = self.held_instead(chosen, from, &mut causes);
         let false_discovery = false_discovery(&causes);
         let mut series = self.series(chosen, &y_before, &causes);
         let structural = causes.iter().filter(|cause| !cause.is_data_fault()).count();
-        causes.extend(self.outliers(chosen, from.firsts));
+        let levels = self.noise_levels(chosen);
+        causes.extend(self.outliers(chosen, from.firsts, &levels));
         let withdrawn = self.withdrawn(chosen, test, &after)?;
         let gain = gain(&before, &after, &floors);
         let curves_only = causes.iter().all(|c| c.is_data_fault() || c.wording.shape.is_some());
@@ -79,6 +81,8 @@ impl Context<'_, '_> {
         };
         let mut notes = self.of_the_record(&y_before);
         notes.extend(self.notes(chosen, &causes));
+        notes.extend(levels.into_iter().flatten());
+        notes.extend(held);
         notes.extend(made_up_for(chosen.track, &causes, gain.error_removed));
         let unknown = verdict == Verdict::Unexplained && causes.is_empty();
         let nearest = unknown.then(|| self.suspicion(chosen)).flatten();

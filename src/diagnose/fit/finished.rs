@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::estimate::Combination;
 use crate::findings::note::Disturbance;
 use crate::fit::covariance::Precision;
 use crate::fit::found::Found;
@@ -30,6 +31,8 @@ pub(crate) struct Finished {
     pub y: Arc<Vec<Vec<f64>>>,
     /// Score that what is left depends on the inputs.
     pub dependence: f64,
+    /// Combinations of parameters that change nothing, where a parameter is named.
+    pub undetermined: Vec<Combination>,
     /// Noise inside the plant, where causes were found beside it, by innovations.
     pub inside: Option<Vec<Disturbance>>,
 }
@@ -67,6 +70,12 @@ impl Moved {
 }
 
 impl Finished {
+    /// Standard error of a parameter; none where others make up for it.
+    pub fn error_of(&self, name: &str, error: Option<f64>) -> Option<f64> {
+        let mut free = self.undetermined.iter().flat_map(|combination| &combination.changes);
+        error.filter(|_| free.all(|(other, _)| other != name))
+    }
+
     /// How many causes it added; those of a finding begin with them.
     pub fn causes(&self) -> usize {
         self.fitted.model.added.len()

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::screen::Screen;
 use crate::fit::problem::{Added, Model};
+use crate::memory::Memory;
 
 /// Members of a named set at most.
 pub(crate) const SET: usize = 4;
@@ -60,12 +61,24 @@ impl Slot {
     }
 }
 
+/// Laws that memory did not hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LeftOut {
+    /// How many, of how many.
+    pub laws: usize,
+    pub of: usize,
+    /// What all of them would take, about.
+    pub whole: Memory,
+}
+
 /// What a search ended with.
 pub(crate) struct Found {
     pub model: Model,
     pub slots: Vec<Slot>,
     /// The ranking of candidates about the model without causes.
     pub first: Option<Screen>,
+    /// Laws that memory did not hold.
+    pub left_out: Option<LeftOut>,
     /// Samples flagged as spikes, per output.
     pub spikes: Vec<Vec<usize>>,
     /// Whether the most causes allowed were reached.

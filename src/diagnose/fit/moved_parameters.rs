@@ -46,7 +46,7 @@ impl Context<'_, '_> {
             let value = Value {
                 name: "value".into(),
                 value: moved.to,
-                std_error: moved.std_error,
+                std_error: chosen.error_of(&moved.name, moved.std_error),
                 unit: unit.clone(),
             };
             let effect = parameter_effect();

@@ -9,12 +9,16 @@ use rayon::prelude::*;
 use crate::candidates::candidate::Wire;
 use crate::fit::simulation_cache::Remembered;
 pub(crate) use crate::fit::supposed::{Added, Grain, Model, Simulated};
+use crate::memory::Memory;
 use crate::system::{Base, Drive, Lane, Placed, Plan, System, SystemError};
 
 /// Lanes that are one block of numbers.
 const PACK: usize = 8;
 /// Blocks that are simulated side by side in one piece of work, at most.
 const TOGETHER: usize = 8;
+
+/// Share of the memory that simulations side by side may take.
+const AT_ONCE: u64 = 12;
 
 /// One simulation that is wanted.
 #[derive(Debug, Clone)]
@@ -80,6 +84,8 @@ pub(crate) struct Problem<'a> {
     pub(crate) plans: Mutex<HashMap<(Grain, Vec<String>), Arc<Plan>>>,
     /// Simulations that may be asked for again.
     pub(crate) remembered: Remembered,
+    /// What it may take.
+    pub(crate) memory: Memory,
 }
 
 impl<'a> Problem<'a> {
@@ -143,6 +149,7 @@ impl<'a> Problem<'a> {
             correction: None,
             plans: Mutex::new(HashMap::new()),
             remembered: Remembered::default(),
+            memory: Memory::default(),
             system,
             base,
             drive,
@@ -152,6 +159,13 @@ impl<'a> Problem<'a> {
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.drive.len()
+    }
+
+    /// Simulations whose outputs memory holds side by side.
+    pub fn at_once(&self, span: Span) -> usize {
+        let samples = if span == Span::Fit { self.fit_drive.len() } else { self.len() };
+        let room = self.memory.part(AT_ONCE) / (8 * samples * self.y.len()).max(1);
+        room.max(PACK)
     }
 
     /// Integration step of a grain, in s.

@@ -78,6 +78,7 @@ pub(super) fn finished(
             model: model.clone(),
             slots,
             first: None,
+            left_out: None,
             spikes: problem.spikes(),
             full: false,
             nothing: found.nothing,
@@ -91,6 +92,7 @@ pub(super) fn finished(
         y,
         // by the innovations, which are not at hand here
         dependence: 0.0,
+        undetermined: vec![],
         inside: Some(disturbances(of, &found.noise)),
     })
 }

@@ -9,3 +9,4 @@ pub(crate) mod operating_range;
 pub(crate) mod outliers;
 pub(crate) mod prepared;
 pub(crate) mod regressors;
+pub(crate) mod windows;

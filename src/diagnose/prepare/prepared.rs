@@ -10,36 +10,11 @@ use crate::findings::context::Context;
 use crate::fit::finished::Finished;
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Model, Problem};
+use crate::memory::Memory;
 use crate::prepare::joined_records::{Joined, join};
 use crate::prepare::operating_range::{LEAST, Nominal};
 use crate::system::System;
 use crate::watch::Watch;
-
-/// Samples that a search looks at, at most.
-const MOST: usize = 9000;
-/// Stretches that are taken of a longer record.
-const WINDOWS: usize = 3;
-
-/// Stretches of records that together are too long for a search; `None` where they are not.
-///
-/// A search over some thousand samples finds what one over a million finds, but for what
-/// is hardly visible; all samples are fitted in the end.
-pub(crate) fn windows(records: &[Record]) -> Option<Vec<Record>> {
-    let total: usize = records.iter().map(Record::len).sum();
-    if total <= MOST + MOST / 3 {
-        return None;
-    }
-    let mut windows = vec![];
-    for record in records {
-        let n = record.len();
-        let length = (MOST as f64 * n as f64 / total as f64) as usize / WINDOWS;
-        for w in 0..WINDOWS {
-            let start = w * (n - length) / (WINDOWS - 1);
-            windows.push(record.slice(start..start + length));
-        }
-    }
-    Some(windows)
-}
 
 /// Everything a search starts from.
 pub(crate) struct Prepared<'a> {
@@ -95,6 +70,13 @@ impl<'a> Prepared<'a> {
         let nominal = Nominal::new(&problem, &start).ok_or_else(|| diverges(&source))?;
         problem.coarsen(&start);
         Ok(Self { joined, problem, start, nominal, source })
+    }
+
+    /// The same with so much memory to work in.
+    #[must_use]
+    pub fn within(mut self, memory: Memory) -> Self {
+        self.problem.memory = memory;
+        self
     }
 
     /// What tells of the findings.
@@ -160,6 +142,7 @@ fn diverges(source: &str) -> EvaluateError {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::prepare::windows::windows;
     use lacuna_core::file::{Format, parse};
 
     #[test]

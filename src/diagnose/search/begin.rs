@@ -61,10 +61,12 @@ pub(super) fn begun(
             .filter(|(_, open)| **open)
             .flat_map(|(own, _)| own.iter().map(|(j, _)| *j))
             .collect();
-        let lent: Vec<Job> = asked.iter().map(|&j| jobs[j].clone()).collect();
         let mut sums = vec![f64::INFINITY; jobs.len()];
-        for (at, y) in asked.iter().zip(problem.run(&lent, Span::Fit)) {
-            sums[*at] = squares(y);
+        for asked in asked.chunks(problem.at_once(Span::Fit)) {
+            let lent: Vec<Job> = asked.iter().map(|&j| jobs[j].clone()).collect();
+            for (at, y) in asked.iter().zip(problem.run(&lent, Span::Fit)) {
+                sums[*at] = squares(y);
+            }
         }
         for ((m, model), own) in moves.iter().zip(&mut models).zip(tried) {
             let best = own.into_iter().min_by(|a, b| sums[a.0].total_cmp(&sums[b.0]));

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::beam::{Fit, SetKey};
 use super::begin::{begun, is_far};
 use super::contribution::{contributions, tangents};
-use super::dictionary::{About, Item, dictionary};
+use super::dictionary::{About, Item, dictionary, room};
 use super::fits::Wish;
 use super::moves::{Move, Moves, Standing};
 use super::neighbours::neighbours;
@@ -95,8 +95,14 @@ fn one_round(study: &mut Study<'_, '_>, best: Fit, round: usize, last: bool) -> 
     }
     let ground = Ground::new(study, best);
     let mut items = std::mem::take(&mut study.items);
-    if round == 0 {
-        items = dictionary(study.problem, &ground.about(), &study.candidates, None);
+    // what memory did not hold may explain more beside other causes
+    let is_stale = study.left_out.is_some() && study.about != causes(&ground.fit);
+    if round == 0 || is_stale {
+        drop(std::mem::take(&mut items));
+        let made = dictionary(study.problem, &ground.about(), &study.candidates, None);
+        items = made.items;
+        study.left_out = made.left_out.or(study.left_out);
+        study.about = causes(&ground.fit);
     }
     let metrics = metrics(study, &ground.fit, round);
     let Moves { mut moves, valued } = ground.standing(study).moves(&items, &metrics, last);
@@ -131,6 +137,11 @@ fn one_round(study: &mut Study<'_, '_>, best: Fit, round: usize, last: bool) -> 
     true
 }
 
+/// The causes of a fit by name, whether parameters are free beside them or not.
+fn causes(fit: &Fit) -> Vec<String> {
+    fit.key().names
+}
+
 /// Looks again about a model at what is wanted, and with `plain` at every law of one number; what was
 /// not looked at again stays what it was. How many items, the first ones, are fresh.
 fn refresh(
@@ -145,10 +156,16 @@ fn refresh(
         let one = study.candidates.iter().enumerate().filter(|(_, cause)| cause.unknowns() == 1);
         wanted.extend(one.filter(|(_, cause)| cause.starts.len() == 1).map(|(c, _)| (c, 0)));
     }
-    let fresh = dictionary(study.problem, &ground.about(), &study.candidates, Some(&wanted));
+    let fresh = dictionary(study.problem, &ground.about(), &study.candidates, Some(&wanted)).items;
     let count = fresh.len();
     let old = std::mem::replace(items, fresh);
-    items.extend(old.into_iter().filter(|item| !wanted.contains(&item.place())));
+    let room = room(study.problem).saturating_sub(items.iter().map(Item::bytes).sum());
+    let stays = old.into_iter().filter(|item| !wanted.contains(&item.place()));
+    let mut taken = 0;
+    items.extend(stays.take_while(|item| {
+        taken += item.bytes();
+        taken <= room
+    }));
     count
 }
 

@@ -7,12 +7,18 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+pub(super) use super::item::{About, Item};
+use super::leading::Leading;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::probes::{Probe, Sharing, limit, steer};
-use crate::fit::problem::{Grain, Model, Part, Problem, Span};
+use crate::fit::found::LeftOut;
+use crate::fit::problem::{Grain, Part, Problem, Span};
 use crate::fit::step_size::ROUGH;
+use crate::memory::Memory;
 use crate::statistics::{deviation, dot, project, rms};
 
+/// Shares of a budget: columns, whitened columns, everything else.
+const SHARES: u64 = 3;
 /// Candidates that have secants too, and grid points of each.
 const SECANTS: usize = 24;
 const POINTS: usize = 2;
@@ -20,28 +26,6 @@ const POINTS: usize = 2;
 /// secant's, as a share of the residual.
 const GENTLE: (f64, f64) = (0.02, 0.5);
 const LARGE: f64 = 0.7;
-
-/// One grid point of a candidate.
-#[derive(Debug, Clone)]
-pub(super) struct Item {
-    /// Number among the candidates.
-    pub candidate: usize,
-    pub cause: Arc<Candidate>,
-    pub start: usize,
-    /// Sign that its first coefficient must have; 0: either.
-    pub sign: f64,
-    /// Effect of one unit of each coefficient on what is fitted, outputs one after the other.
-    pub columns: Vec<Vec<f64>>,
-    /// Coefficient of the probe.
-    pub probe: f64,
-}
-
-impl Item {
-    /// Candidate and grid point.
-    pub fn place(&self) -> (usize, usize) {
-        (self.candidate, self.start)
-    }
-}
 
 /// Spread of the outputs in units of their scales.
 pub(super) fn spread(problem: &Problem<'_>) -> f64 {
@@ -52,21 +36,25 @@ pub(super) fn spread(problem: &Problem<'_>) -> f64 {
     ((0..problem.y.len()).map(of).sum::<f64>() / problem.y.len().max(1) as f64).sqrt()
 }
 
-/// What is known about the model that candidates are probed about.
-pub(super) struct About<'a> {
-    pub model: &'a Model,
-    pub residual: &'a [f64],
-    /// What its own numbers can imitate, orthonormal.
-    pub basis: &'a [Vec<f64>],
+/// Grid points, and the laws that memory did not hold.
+pub(super) struct Dictionary {
+    pub items: Vec<Item>,
+    pub left_out: Option<LeftOut>,
 }
 
-/// All grid points about a model, or those that are `wanted`.
+/// Bytes that columns may take; the whitened ones of a metric take as much, and so does the rest.
+pub(super) fn room(problem: &Problem<'_>) -> usize {
+    problem.memory.part(SHARES)
+}
+
+/// All grid points about a model, or those that are `wanted`. Where memory does not hold them, they are
+/// made some candidates at a time and those stay that explain most of the residual, each alone.
 pub(super) fn dictionary(
     problem: &Problem<'_>,
     about: &About<'_>,
     candidates: &[Arc<Candidate>],
     wanted: Option<&BTreeSet<(usize, usize)>>,
-) -> Vec<Item> {
+) -> Dictionary {
     let (model, residual) = (about.model, about.residual);
     let spread = spread(problem);
     // probes are compared with the same steps without them
@@ -94,8 +82,44 @@ pub(super) fn dictionary(
             }
         }
     }
-    let hits =
-        steer(problem, &mut sharing, candidates, &mut probes, &present, (1e-6, gentle), true);
+    let (room, column) = (room(problem), 8 * residual.len());
+    let (all, of) = (probes.len(), wanted_laws(&probes));
+    let at_once = match all * column > room {
+        true => (room / 4 / column.max(1)).max(1),
+        false => all,
+    };
+    let mut kept = Leading::new(about, room);
+    let mut rest = &mut probes[..];
+    while !rest.is_empty() {
+        let (block, after) = rest.split_at_mut(block(rest, at_once));
+        let hits = steer(problem, &mut sharing, candidates, block, &present, (1e-6, gentle), true);
+        kept.take(tangents(candidates, hits));
+        rest = after;
+    }
+    let laws = kept.left_out();
+    let whole = Memory::of((SHARES as usize * all * column) as u64);
+    let left_out = (laws > 0).then_some(LeftOut { laws, of, whole });
+    let mut items = kept.items;
+    if size > 2.0 * gentle {
+        let mut probes = secants(about, &items, LARGE * size / gentle);
+        let target = LARGE * size;
+        let hits =
+            steer(problem, &mut sharing, candidates, &mut probes, &present, (0.3, target), false);
+        items.extend(hits.into_iter().map(|(probe, column)| Item {
+            candidate: probe.candidate,
+            cause: candidates[probe.candidate].clone(),
+            start: probe.start,
+            sign: probe.size.signum(),
+            columns: vec![column],
+            probe: probe.size,
+        }));
+    }
+    items.retain(Item::is_finite);
+    Dictionary { items, left_out }
+}
+
+/// Grid points whose probes hit, by candidate.
+fn tangents(candidates: &[Arc<Candidate>], hits: Vec<(Probe, Vec<f64>)>) -> Vec<Item> {
     let mut of_start: BTreeMap<(usize, usize), Vec<(Vec<f64>, f64)>> = BTreeMap::new();
     for (probe, column) in hits {
         of_start.entry((probe.candidate, probe.start)).or_default().push((column, probe.size));
@@ -111,22 +135,18 @@ pub(super) fn dictionary(
         let sign = if cause.blended() { 1.0 } else { cause.sign };
         items.push(Item { candidate, cause: cause.clone(), start, sign, columns, probe });
     }
-    if size > 2.0 * gentle {
-        let mut probes = secants(about, &items, LARGE * size / gentle);
-        let target = LARGE * size;
-        let hits =
-            steer(problem, &mut sharing, candidates, &mut probes, &present, (0.3, target), false);
-        items.extend(hits.into_iter().map(|(probe, column)| Item {
-            candidate: probe.candidate,
-            cause: candidates[probe.candidate].clone(),
-            start: probe.start,
-            sign: probe.size.signum(),
-            columns: vec![column],
-            probe: probe.size,
-        }));
-    }
-    items.retain(|item| item.columns.iter().flatten().all(|v| v.is_finite()));
     items
+}
+
+/// How many laws some probes are of.
+fn wanted_laws(probes: &[Probe]) -> usize {
+    probes.chunk_by(|a, b| a.candidate == b.candidate).count()
+}
+
+/// How many of the first probes make whole candidates and are `at_once` or a few more.
+fn block(probes: &[Probe], at_once: usize) -> usize {
+    let last = probes[at_once.min(probes.len()) - 1].candidate;
+    probes.partition_point(|probe| probe.candidate <= last)
 }
 
 /// Probes that are larger by a factor, of the candidates that explain most to first order.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::beam::Fit;
 use crate::evidence::{Choices, NoiseModel, Whitener, occam, price, width};
 use crate::fit::nuisance::{Key, Nuisance, get};
-use crate::fit::problem::{Grain, Model, Problem};
+use crate::fit::problem::{Grain, Model, Problem, Span};
 use crate::fit::refit::{Fitted, Refit, refit_whitened};
 use crate::optimise::Settings;
 
@@ -41,6 +41,15 @@ impl Judge<'_, '_> {
     pub fn fit(&self, wishes: &[Wish], iterations: usize) -> Vec<Fit> {
         let settings = Settings { iterations, tolerance: 1e-5, difference: 2e-3 };
         let how = Refit { settings, grain: Grain::Coarse, whole: false };
+        let keys = |wish: &Wish| self.nuisance.keys(&wish.model).len() + 1;
+        let numbers = wishes.iter().map(keys).max().unwrap_or(1);
+        // a simulation, a residual and a derivative for every number that moves
+        let at_once = (self.problem.at_once(Span::Fit) / numbers).max(1);
+        wishes.chunks(at_once).flat_map(|wishes| self.fit_at_once(wishes, how)).collect()
+    }
+
+    /// Fits as many as memory holds; each does not know of the others.
+    fn fit_at_once(&self, wishes: &[Wish], how: Refit) -> Vec<Fit> {
         let models: Vec<Model> = wishes.iter().map(|wish| wish.model.clone()).collect();
         let noises: Vec<_> = wishes.iter().map(|wish| wish.noise.clone()).collect();
         let fitted = refit_whitened(self.problem, self.nuisance, &models, &noises, how);

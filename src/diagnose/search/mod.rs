@@ -23,7 +23,9 @@ mod dictionary;
 mod fits;
 #[cfg(test)]
 pub(crate) mod fixture;
+mod item;
 mod laws;
+mod leading;
 mod metric;
 mod moves;
 mod nameless;

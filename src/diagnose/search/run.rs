@@ -206,6 +206,7 @@ fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched
         slots: slots(study.problem, &study.beam, &headline),
         model: headline.model.clone(),
         first,
+        left_out: study.left_out,
         spikes: study.problem.spikes(),
         full: headline.causes() >= study.most && study.most > 0,
         nothing,

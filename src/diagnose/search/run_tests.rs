@@ -4,6 +4,8 @@ use crate::Diagnosis;
 use crate::data::{Random, Record};
 use crate::evaluate::{Init, Simulation};
 use crate::findings::finding::{Finding, Verdict};
+use crate::findings::note::Note;
+use crate::memory::Memory;
 use crate::system::System;
 use lacuna_core::file::{Format, parse};
 
@@ -60,6 +62,36 @@ fn a_hidden_law_is_named_with_its_probability_whatever_the_number_of_threads() {
     let three = found(&record, 3);
     assert_eq!(format!("{:?}", one.causes), format!("{:?}", three.causes));
     assert_eq!(one.verdict_probability, three.verdict_probability);
+}
+
+/// Room for 30 effects of the 200 or so: what explains most alone is weighed, and what was left out is
+/// said. Room for all of them changes nothing.
+#[test]
+fn what_memory_does_not_hold_is_left_out_by_rule_and_said() {
+    let hidden = "[[effects]]\ninto = \"f\"\nof = \"x\"\neffect.cubic = { coefficient = -2.0 }\n";
+    let record = record(&system(hidden), 0.02);
+    let system = system("");
+    let only = ["cubic", "drag", "bias", "linear", "saturation", "dead_zone", "hysteresis", "stop"];
+    let within = |memory: Memory| {
+        let diagnosis = Diagnosis::of(&system).only(&only.map(String::from)).memory(memory);
+        diagnosis.run(std::slice::from_ref(&record), None, &()).unwrap()
+    };
+    let named = |finding: &Finding| {
+        let cause = &finding.causes[0];
+        assert_eq!((&cause.effect[..], cause.of.as_deref()), ("cubic", Some("x")), "{finding}");
+    };
+    let left_out = |finding: &Finding| {
+        finding.notes.iter().find_map(|note| match note {
+            Note::LawsLeftOut { laws, of, .. } => Some((*laws, *of)),
+            _ => None,
+        })
+    };
+    let (all, little) = (within(Memory::of(1 << 30)), within(Memory::small(500_000)));
+    named(&all);
+    named(&little);
+    assert_eq!(left_out(&all), None);
+    let (laws, of) = left_out(&little).expect("a third of the memory holds 25 columns");
+    assert!(laws > 0 && laws < of, "{laws} of {of}");
 }
 
 #[test]

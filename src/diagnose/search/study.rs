@@ -10,6 +10,7 @@ use super::starts;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::library::{Allowed, library};
 use crate::evidence::{Choices, NoiseModel, Stretches};
+use crate::fit::found::LeftOut;
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Model, Part, Problem, Span};
 use crate::fit::refit::Fitted;
@@ -43,6 +44,9 @@ pub(super) struct Study<'a, 'b> {
     pub candidates: Vec<Arc<Candidate>>,
     pub choices: Choices,
     pub items: Vec<Item>,
+    /// Laws that memory did not hold, and the causes of the model that the items are about.
+    pub left_out: Option<LeftOut>,
+    pub about: Vec<String>,
     /// Sets that were fitted from a move, and those that were fitted as neighbours.
     pub tried: BTreeSet<SetKey>,
     pub settled: BTreeSet<SetKey>,
@@ -72,6 +76,8 @@ impl<'a, 'b> Study<'a, 'b> {
             candidates: vec![],
             choices: Choices { names: NAMES, laws: LAWS },
             items: vec![],
+            left_out: None,
+            about: vec![],
             tried: BTreeSet::new(),
             settled: BTreeSet::new(),
         }

@@ -9,7 +9,7 @@
 
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run};
-use crate::prepare::prepared::windows;
+use crate::prepare::windows::windows;
 use crate::statistics::{Regression, deviation, mean};
 use crate::system::{Lane, System};
 

@@ -10,7 +10,9 @@ use crate::diagnosis::Diagnosis;
 use crate::error::DiagnoseError;
 use crate::findings::cause::Cause;
 use crate::findings::finding::Verdict;
+use crate::findings::note::Note;
 use crate::prepare::integration_error::unresolved;
+use crate::prepare::windows::thinned;
 use crate::segmentation::horizon;
 use crate::statistics::normal_tail;
 use crate::validate::adequacy::Adequacy;
@@ -31,6 +33,8 @@ pub struct GoodnessOfFit {
     pub data_faults: Vec<Cause>,
     /// Whether somebody stopped the search.
     pub interrupted: bool,
+    /// What memory did not hold.
+    pub notes: Vec<Note>,
 }
 
 impl GoodnessOfFit {
@@ -52,7 +56,8 @@ fn is_scale(cause: &Cause) -> bool {
 }
 
 fn changes_what_is_measured(cause: &Cause) -> bool {
-    matches!(cause.effect.as_str(), "swapped_sign" | "clipping" | "stuck") || is_scale(cause)
+    matches!(cause.effect.as_str(), "swapped_sign" | "clipping" | "stuck" | "unrelated")
+        || is_scale(cause)
 }
 
 impl Diagnosis<'_> {
@@ -66,13 +71,32 @@ impl Diagnosis<'_> {
         records: &[Record],
         watch: &dyn Watch,
     ) -> Result<GoodnessOfFit, DiagnoseError> {
-        let finding = self.run(records, None, watch)?;
+        self.check_names()?;
+        let thin = thinned(self.system, records, None, self.memory);
+        let Some(thin) = thin else { return self.check_on(records, watch) };
+        let mut checked = self.check_on(&thin.records, watch)?;
+        let causes = checked.first_cause.iter_mut().chain(&mut checked.data_faults);
+        causes.for_each(|cause| thin.place(cause));
+        checked.notes.insert(0, thin.note);
+        Ok(checked)
+    }
+
+    /// The same on records that memory holds.
+    fn check_on(
+        &self,
+        records: &[Record],
+        watch: &dyn Watch,
+    ) -> Result<GoodnessOfFit, DiagnoseError> {
+        let mut finding = self.run_on(records, None, watch)?;
+        finding.notes.retain(|note| matches!(note, Note::LawsLeftOut { .. }));
+        let notes = finding.notes;
         let interrupted = finding.interrupted || watch.stopped();
         let (data_faults, of_the_model): (Vec<Cause>, Vec<Cause>) =
             finding.causes.iter().cloned().partition(is_of_data);
         let first_cause = of_the_model.first().or(data_faults.first()).cloned();
         if interrupted {
-            return Ok(GoodnessOfFit { p_value: None, first_cause, data_faults, interrupted });
+            let p_value = None;
+            return Ok(GoodnessOfFit { p_value, first_cause, data_faults, interrupted, notes });
         }
         let named = of_the_model.first().and_then(|cause| cause.p_value).unwrap_or(1.0);
         let residual = if unresolved(self.system, records)?.is_some() {
@@ -90,6 +114,7 @@ impl Diagnosis<'_> {
             _ => normal_tail(finding.dependence),
         });
         let p_value = (residual / (1.0 - OF_SEARCH)).min(named / OF_SEARCH).min(1.0);
-        Ok(GoodnessOfFit { p_value: Some(p_value), first_cause, data_faults, interrupted })
+        let p_value = Some(p_value);
+        Ok(GoodnessOfFit { p_value, first_cause, data_faults, interrupted, notes })
     }
 }

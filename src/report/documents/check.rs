@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::diagnosis::cause_document;
 use crate::diagnose::GoodnessOfFit;
+use crate::sentences::note;
 
 /// A check at a level between 0 and 1: `rejected` is null where somebody stopped it.
 ///
@@ -21,6 +22,9 @@ pub fn goodness_of_fit(checked: &GoodnessOfFit, level: f64) -> Result<Value, ser
         "data_faults": faults,
         "data_rejected": checked.rejects_data(),
     });
+    if !checked.notes.is_empty() {
+        document["remarks"] = json!(checked.notes.iter().map(note).collect::<Vec<_>>());
+    }
     if checked.interrupted {
         document["interrupted"] = json!(true);
     }

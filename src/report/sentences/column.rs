@@ -36,6 +36,18 @@ pub fn sentence(cause: &Cause, fault: ColumnFault) -> String {
             "{into} is dead: every reading is {}, while the model says that the machine moves.",
             with_unit(value, unit)
         ),
+        ColumnFault::Unrelated { level, noise, is_level: true } => format!(
+            "{into} is not connected: it reads {} with noise of {} rms and has no relation to the inputs \
+             or to any other output, while the model says that it moves.",
+            with_unit(level, unit),
+            with_unit(noise, unit)
+        ),
+        ColumnFault::Unrelated { noise, is_level: false, .. } => format!(
+            "{into} has nothing to do with the inputs: it moves by {} rms, without any relation to them, \
+             to what the model says or to any other output. It is a column of another record or of \
+             another machine, or its sensor drifts.",
+            with_unit(noise, unit)
+        ),
         ColumnFault::Gross(value) => {
             let row = cause.rows.as_ref().and_then(|rows| rows.first()).copied().unwrap_or(0);
             let value = with_unit(value, unit);

@@ -1,8 +1,8 @@
 //! What is worth knowing beside the causes, one paragraph each.
 
 use super::inside::inside;
-use crate::diagnose::{AtLines, ClosedLoop, Distortion, Finding, Note, Regime};
-use crate::digits::{number, percent, rough, spaced, with_unit};
+use crate::diagnose::{AtLines, ClosedLoop, Distortion, Finding, Follows, Note, Regime, Released};
+use crate::digits::{interval, number, percent, rough, spaced, with_unit};
 
 /// Everything that a finding has to say beside its causes, in the order in which it should be read.
 pub fn notes(finding: &Finding) -> Vec<String> {
@@ -30,6 +30,16 @@ pub fn note(note: &Note) -> String {
              with a start fitted to it; all figures are of such stretches. Signs of columns and the clock \
              were not checked.",
             number(*seconds, None)
+        ),
+        Note::Thinned { samples, of, stretches, memory, whole } => format!(
+            "Of {of} samples {samples} were looked at, in {stretches} stretches spread evenly over the \
+             records, each as a record of its own: {memory} of memory were allowed, and all samples \
+             would take about {whole} (--memory)."
+        ),
+        Note::LawsLeftOut { laws, of, memory, whole } => format!(
+            "Memory of {memory} does not hold the effects of all {of} laws side by side. The {laws} that \
+             explain least of what is left, each alone, were not weighed together with others: two laws \
+             of which neither shows alone may have been missed. All would take about {whole} (--memory)."
         ),
         Note::Unresolved { output, left, error, unit } => format!(
             "What the simulation leaves of {output} ({} rms) is no more than its own error, of the \
@@ -92,6 +102,30 @@ pub fn note(note: &Note) -> String {
              starts and stops tell them apart.",
             of.as_deref().unwrap_or("The velocity")
         ),
+        Note::Held { released, odds, named } => held_instead(released, *odds, *named),
+        Note::NoiseLevel { output, low, high, unit, follows, left_out } => {
+            let how = match follows {
+                Follows::Time => "in the course of the record".into(),
+                Follows::Signal(name) if name == output => "with its size".into(),
+                Follows::Signal(name) => format!("with {name}"),
+                Follows::Itself => "in bursts".into(),
+            };
+            let weight = match left_out {
+                0 => String::new(),
+                1 => " One sample far beyond the usual level was given no weight.".into(),
+                n => format!(" {n} samples far beyond the usual level were given no weight."),
+            };
+            format!(
+                "The noise of {output} changes its level {how}, between {} and {} rms: these are no \
+                 outliers, and the errors allow for it.{weight}",
+                short(*low, unit),
+                short(*high, unit)
+            )
+        }
+        Note::CannotTell { together } => format!(
+            "The record cannot tell which parameter is wrong: {together}. What is named stands for all of \
+             them, and has no error of its own; hold with --fix those that you are sure of."
+        ),
         Note::ParametersMakeUp { removed, each } => format!(
             "The extended model removes {} of the removable error; without what is named, the other \
              parameters would make up for all but {} of that. The record tells that parameters are wrong, \
@@ -103,6 +137,37 @@ pub fn note(note: &Note) -> String {
             "Nearest to what is left comes a curve of {of} on {into}: it predicts {} of it where it was \
              not fitted.",
             percent(*share)
+        ),
+    }
+}
+
+/// Odds, as a natural logarithm, from which one explanation is more probable than another: 20 to 1.
+const BETTER: f64 = 3.0;
+
+/// What held parameters could be instead of what is named.
+fn held_instead(released: &[Released], odds: f64, named: usize) -> String {
+    let one = |of: &Released| {
+        let size = interval(of.value, of.std_error, &of.unit);
+        match of.drifts {
+            true => format!("{} drifts by {size}", of.name),
+            false => {
+                format!("{} is {size} instead of {}", of.name, number(of.stated, None))
+            }
+        }
+    };
+    let all: Vec<String> = released.iter().map(one).collect();
+    let all = all.join(", or ");
+    match (named, odds > BETTER) {
+        (0, _) => format!(
+            "What is left would be explained by a parameter that is held as right: {all}. If that may be, \
+             let it go in the model file."
+        ),
+        (_, true) => format!(
+            "A parameter that is held as right explains this better than what is named: {all}. If that may \
+             be, what is named above is no cause."
+        ),
+        (_, false) => format!(
+            "The data cannot tell what is named from a parameter that is held as right being wrong: {all}."
         ),
     }
 }
