@@ -105,7 +105,11 @@ fn rivals(page: &mut Page, cause: &Cause) {
     }
     page.table(&header, &rows);
     if let Some(place) = cause.place_probability {
-        let said = format!("Probability of this place, whatever the law: {:.1} %.", 100.0 * place);
+        let said = format!(
+            "Probability of this place, whatever the law: {:.1} %. How often such probabilities were right \
+             where the answer was known: docs/results/calibration.json of the project.",
+            100.0 * place
+        );
         page.element("p", "note", &said);
     }
 }

@@ -1,8 +1,8 @@
 //! Noise inside the plant: whether records call for it, and what is wrong where they do.
 //!
 //! ```text
-//! the model forgets nothing within its records: causes <- by the innovations; where noise inside the plant
-//!     is called for beside them they are the answer
+//! the model forgets nothing within its records, and these are of a closed loop:
+//!     causes <- by the innovations; where noise inside the plant is called for beside them: the answer
 //! answer <- the search by free runs
 //! what it leaves is white                     keep it: all noise sits at the sensors
 //! free run with autoregressive noise as likely as a predictor with noise inside: keep it

@@ -1,6 +1,6 @@
 //! An answer of free runs, reconsidered where the records call for noise inside the plant.
 
-use crate::likelihood::{Explanation, Predictor};
+use crate::likelihood::{Explanation, NoiseModel, Predictor};
 
 use super::compete::{Rivals, extended, left, predictor, step};
 use super::conversion::{carried_over, finished};
@@ -40,26 +40,40 @@ pub(crate) fn search(
     Ok(reconsidered(prepared, allowed, most, answer, watch))
 }
 
-/// What the innovations find in records of a model that forgets nothing within them, where noise inside
-/// the plant is called for beside it. A free run of such a model follows that noise, not the causes, and
-/// a search by it is long; where the noise is not called for, it is the one that sees more.
+/// What the innovations find in a closed loop about a model that forgets nothing within its records,
+/// where noise inside the plant is called for beside it. A free run of such a model follows that noise,
+/// which the loop feeds back, and not the causes (Forssell and Ljung, Automatica 35, 1999).
 fn directly(
     prepared: &mut Prepared<'_>,
     allowed: &Allowed,
     most: usize,
     watch: &dyn Watch,
 ) -> Result<Option<Finished>, DiagnoseError> {
-    if allowed.sensor_noise || most == 0 || is_many(prepared) {
-        return Ok(None);
-    }
-    let forgets = predictor(&prepared.problem, &prepared.start, allowed).and_then(|p| p.forgets());
-    if forgets.unwrap_or(true) {
+    let asked = !allowed.sensor_noise && most > 0 && !is_many(prepared);
+    if !asked || !drifts_in_a_loop(prepared, allowed).unwrap_or(false) {
         return Ok(None);
     }
     let nothing = prepared.search(allowed, 0, watch)?;
     watch.tell(0.1, "searching by innovations");
     let found = by_innovations(prepared, allowed, most, &nothing, watch);
+    let found = found.filter(|found| found.causes() > 0);
     Ok(found.filter(|found| is_called_for(prepared, allowed, found).unwrap_or(false)))
+}
+
+/// Whether a model forgets nothing within its records, and an input reacts to what it did not foresee.
+fn drifts_in_a_loop(prepared: &Prepared<'_>, allowed: &Allowed) -> Option<bool> {
+    let problem = &prepared.problem;
+    let base = predictor(problem, &prepared.start, allowed).ok()?;
+    if base.forgets().ok()? {
+        return Some(false);
+    }
+    let NoiseModel::Predictor(noise) = base.fit_noise().ok()?.noise else { return None };
+    let innovations = base.innovations(&noise, true).ok()?.values;
+    let foreseen = problem.y.iter().zip(&innovations).map(|(y, e)| {
+        y.iter().zip(e).map(|(y, e)| if e.is_finite() { y - e } else { *y }).collect()
+    });
+    let foreseen: Vec<Vec<f64>> = foreseen.collect();
+    Some(prepared.context().feedback_of(&foreseen).is_some())
 }
 
 /// Whether noise inside the plant is clearly more probable beside an answer.

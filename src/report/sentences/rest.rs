@@ -2,7 +2,8 @@
 
 use super::cause::phrase;
 use crate::diagnose::{
-    Alternative, Cause, Finding, Left, NotFound, RecordFacts, Unweighed, Verdict, Withdrawn,
+    Alternative, Cause, ColumnFault, Finding, Left, NotFound, RecordFacts, Unweighed, Verdict,
+    Withdrawn,
 };
 use crate::digits::{number, percent, rough, spaced};
 use crate::evaluate::Metrics;
@@ -111,7 +112,16 @@ fn over_noise(ratio: f64) -> String {
 
 /// That faults of the data are not all that is wrong, where they are not.
 fn data_fault(finding: &Finding) -> Option<String> {
-    not_only_data(finding.verdict, finding.left.values())
+    // readings that say nothing of the machine leave nothing of it either
+    let says_nothing = |output: &String| {
+        finding.causes.iter().any(|cause| {
+            let fault = cause.wording.fault.as_ref();
+            let blind = matches!(fault, Some(ColumnFault::Dead(_) | ColumnFault::Unrelated { .. }));
+            blind && cause.into == *output
+        })
+    };
+    let heard = finding.left.iter().filter(|(output, _)| !says_nothing(output));
+    not_only_data(finding.verdict, heard.map(|(_, left)| left))
 }
 
 pub(super) fn not_only_data<'a>(
