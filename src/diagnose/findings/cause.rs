@@ -7,19 +7,7 @@ use serde::Serialize;
 use crate::effect::Size;
 use crate::findings::active_range::ActsWhere;
 use crate::findings::per_record::InRecord;
-
-/// A value with its uncertainty.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Value {
-    /// Name of the effect's parameter.
-    pub name: String,
-    /// Value.
-    pub value: f64,
-    /// Standard error; `None` where the data do not say.
-    pub std_error: Option<f64>,
-    /// Unit.
-    pub unit: String,
-}
+pub use crate::findings::value::{Onset, Value};
 
 /// Another explanation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -98,15 +86,6 @@ pub struct LawPart {
     /// What sentences need.
     #[serde(skip)]
     pub wording: Wording,
-}
-
-/// When a cause begins within the record.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Onset {
-    /// Time of the record's clock in s.
-    pub time: f64,
-    /// Standard error in s; `None` where the data do not say.
-    pub std_error: Option<f64>,
 }
 
 /// A law that is no law of the library.

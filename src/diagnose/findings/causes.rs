@@ -5,7 +5,6 @@ use std::sync::Arc;
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::naming::title_of;
 use crate::candidates::sums::by_likeness;
-use crate::effect::Size;
 use crate::error::DiagnoseError;
 use crate::findings::cause::{
     Alternative, Cause, ColumnFault, LawPart, Site, Unweighed, Value, Wording,
@@ -14,9 +13,7 @@ use crate::findings::context::Context;
 use crate::findings::note::Note;
 use crate::fit::finished::Finished;
 use crate::fit::found::SET;
-use crate::fit::nuisance::Key;
-use crate::fit::problem::{Added, Grain};
-use crate::fit::profile_likelihood;
+use crate::fit::problem::Added;
 use crate::validate::false_discovery::{either, on_test};
 use crate::validate::noise_floor::Floor;
 use crate::validate::test_error::{Scored, TestData, removed};
@@ -130,25 +127,6 @@ impl Context<'_, '_> {
         LawPart { wording, ..cause.as_part(&values) }
     }
 
-    /// The sum of two coefficients by which a law is stated: its variance is that of both and twice
-    /// their covariance.
-    fn total(&self, chosen: &Finished, index: usize) -> Option<Value> {
-        let Added { cause, knobs } = &chosen.fitted.model.added[index];
-        let Size::Total(names) = cause.card.properties.size else { return None };
-        let at = |name: &str| cause.card.knobs.iter().position(|knob| knob.name == name);
-        let own = [at(names[0])?, at(names[1])?];
-        let keys = own.map(|i| Key::Knob(index, i));
-        let between = chosen.precision.as_ref().and_then(|precision| precision.between(&keys));
-        let variance = between.map(|between| between.sum());
-        let knob = &cause.card.knobs[own[0]];
-        Some(Value {
-            name: knob.name.to_string(),
-            value: own.iter().map(|&i| knobs[i]).sum(),
-            std_error: variance.filter(|v| *v > 0.0 && v.is_finite()).map(f64::sqrt),
-            unit: knob.unit.text(&cause.units.0, &cause.units.1),
-        })
-    }
-
     /// Readings that were cut off by the instrument. The extended model has its limits, as a
     /// saturation of the output, which is the other name for it.
     fn clipping(
@@ -172,45 +150,6 @@ impl Context<'_, '_> {
         let other = Alternative { unweighed, ..limit.alternative(share) };
         let fault = of_column("clipping", &limit.into, ColumnFault::Clipping, parameters, rows);
         Cause { p_value, error_removed: share, indistinguishable: vec![other], ..fault }
-    }
-
-    /// Numbers of a cause: values of a parameter are the new value, not its change.
-    fn values(&self, chosen: &Finished, index: usize) -> Vec<Value> {
-        let added = &chosen.fitted.model.added[index];
-        let cause = &added.cause;
-        let knobs = cause.clipped(&added.knobs, self.problem.step(Grain::Fine));
-        let errors = profile_likelihood::errors(self.problem, chosen, index);
-        let error = |i: usize| errors[i];
-        if let Wire::Parameter(p) = cause.wire {
-            return vec![Value {
-                name: "value".into(),
-                value: chosen.fitted.model.theta[p] + knobs[0],
-                std_error: chosen.error_of(&cause.into, error(0)),
-                unit: cause.units.0.clone(),
-            }];
-        }
-        let knobs = cause.card.knobs.iter().zip(knobs).enumerate();
-        // where the values of a free curve stand is part of what was found
-        let at = crate::candidates::free_curve::knots_of(cause).into_iter().enumerate().map(
-            |(i, knot)| Value {
-                name: format!("knots.{i}"),
-                value: knot,
-                std_error: None,
-                unit: cause.units.1.clone(),
-            },
-        );
-        let values =
-            knobs.filter(|(_, (_, value))| value.is_finite()).map(|(i, (knob, value))| Value {
-                name: knob.name.to_string(),
-                value,
-                std_error: error(i),
-                unit: match cause.wire {
-                    Wire::Drift(_) if cause.units.0.is_empty() => "1/s".into(),
-                    Wire::Drift(_) => format!("{}/s", cause.units.0),
-                    _ => knob.unit.text(&cause.units.0, &cause.units.1),
-                },
-            });
-        values.chain(at).collect()
     }
 
     /// Spikes, where there are too many to be chance.
