@@ -8,8 +8,8 @@
 //! ```
 //!
 //! Who wrote a file is read off the file: pages name their generator, model files and exported sources
-//! say in their first lines which command wrote them, exported units in their comment, JSON documents have the keys that lacuna gives them,
-//! tables its columns; a generated record has the checksum that `truth.json` beside it states.
+//! say in their first lines which command wrote them, exported units in their comment, JSON documents
+//! have the keys that lacuna gives them, tables its columns; a generated record has the checksum that `truth.json` beside it states.
 
 use std::collections::BTreeMap;
 use std::fs::File;

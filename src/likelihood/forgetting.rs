@@ -7,7 +7,6 @@
 //! Automatic Control 45, 2000.
 
 use super::error::LikelihoodError;
-use super::follow::Wanted;
 use super::path::Path;
 use super::predictor::Predictor;
 
@@ -21,8 +20,7 @@ impl Predictor {
     ///
     /// If the filter cannot be run.
     pub fn forgets(&self) -> Result<bool, LikelihoodError> {
-        let noise = self.white(self.spread.iter().map(|s| s * s + f64::MIN_POSITIVE).collect());
-        let path = self.run(&self.model, &noise, Wanted::default())?.path;
+        let path = self.loose_path()?;
         let scales: Vec<f64> = self.start.p0.iter().map(|p| p.sqrt()).collect();
         Ok(remembered(&path, &scales) < FORGOTTEN)
     }

@@ -238,11 +238,16 @@ impl Predictor {
         Noise::measurement(variances, self.model.plan.sizes.w + self.model.plan.sizes.u)
     }
 
+    /// The path of a filter that takes the sensors' noise for as large as what they read.
+    pub(crate) fn loose_path(&self) -> Result<Path, LikelihoodError> {
+        let noise = self.white(self.spread.iter().map(|s| s * s + f64::MIN_POSITIVE).collect());
+        Ok(self.run(&self.model, &noise, Wanted::default())?.path)
+    }
+
     /// How far each state may be from its initial value: its course in a free run, as long as that
     /// stays near what was measured.
     fn state_scales(&self) -> Result<Vec<f64>, LikelihoodError> {
-        let noise = self.white(self.spread.iter().map(|s| s * s + f64::MIN_POSITIVE).collect());
-        let path = self.run(&self.model, &noise, Wanted::default())?.path;
+        let path = self.loose_path()?;
         let initial = &self.start.x[0];
         let mut far: Vec<f64> = initial.iter().map(|x| x.abs()).collect();
         for segment in &path.segments {

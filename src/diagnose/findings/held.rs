@@ -15,6 +15,7 @@ use std::sync::Arc;
 use super::cause::{Alternative, Cause};
 use super::context::{Context, Source};
 use super::note::{Note, Released};
+use super::numbers::per_second;
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::library::Builder;
 use crate::candidates::probes::with_candidate;
@@ -135,11 +136,7 @@ impl Context<'_, '_> {
             value: if drifts { change } else { parameter.value + change },
             std_error: precision.and_then(|precision| precision.error(key)),
             stated: parameter.value,
-            unit: match (drifts, unit.is_empty()) {
-                (false, _) => unit.clone(),
-                (true, true) => "1/s".into(),
-                (true, false) => format!("{unit}/s"),
-            },
+            unit: if drifts { per_second(unit) } else { unit.clone() },
             drifts,
         })
     }

@@ -9,6 +9,11 @@ use crate::fit::nuisance::Key;
 use crate::fit::problem::{Added, Grain};
 use crate::fit::profile_likelihood;
 
+/// Unit of a rate of change of what has this unit.
+pub(super) fn per_second(unit: &str) -> String {
+    if unit.is_empty() { "1/s".into() } else { format!("{unit}/s") }
+}
+
 impl Context<'_, '_> {
     /// Numbers of a cause: values of a parameter are the new value, not its change.
     pub fn values(&self, chosen: &Finished, index: usize) -> Vec<Value> {
@@ -41,8 +46,7 @@ impl Context<'_, '_> {
                 value,
                 std_error: error(i),
                 unit: match cause.wire {
-                    Wire::Drift(_) if cause.units.0.is_empty() => "1/s".into(),
-                    Wire::Drift(_) => format!("{}/s", cause.units.0),
+                    Wire::Drift(_) => per_second(&cause.units.0),
                     _ => knob.unit.text(&cause.units.0, &cause.units.1),
                 },
             });

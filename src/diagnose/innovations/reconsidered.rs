@@ -49,8 +49,9 @@ fn directly(
     most: usize,
     watch: &dyn Watch,
 ) -> Result<Option<Finished>, DiagnoseError> {
-    let asked = !allowed.sensor_noise && most > 0 && !is_many(prepared);
-    if !asked || !drifts_in_a_loop(prepared, allowed).unwrap_or(false) {
+    if !may_be_asked(prepared, allowed, most)
+        || !drifts_in_a_loop(prepared, allowed).unwrap_or(false)
+    {
         return Ok(None);
     }
     let nothing = prepared.search(allowed, 0, watch)?;
@@ -69,24 +70,38 @@ fn drifts_in_a_loop(prepared: &Prepared<'_>, allowed: &Allowed) -> Option<bool> 
     }
     let NoiseModel::Predictor(noise) = base.fit_noise().ok()?.noise else { return None };
     let innovations = base.innovations(&noise, true).ok()?.values;
-    let foreseen = problem.y.iter().zip(&innovations).map(|(y, e)| {
-        y.iter().zip(e).map(|(y, e)| if e.is_finite() { y - e } else { *y }).collect()
-    });
-    let foreseen: Vec<Vec<f64>> = foreseen.collect();
+    let both = problem.y.iter().zip(&innovations);
+    let foreseen: Vec<Vec<f64>> = both.map(|(y, e)| foreseen(y, e.iter())).collect();
     Some(prepared.context().feedback_of(&foreseen).is_some())
 }
 
 /// Whether noise inside the plant is clearly more probable beside an answer.
 fn is_called_for(prepared: &Prepared<'_>, allowed: &Allowed, of: &Finished) -> Option<bool> {
-    let problem = &prepared.problem;
-    let base = predictor(problem, &of.fitted.model, allowed).ok()?;
-    let system = prepared.context().extend(&of.fitted.model).ok()?;
-    Some(Rivals::of(&extended(&base, &system, step(problem))?).call_for_more(CLEARLY))
+    let (_, known) = predictors(prepared, allowed, of)?;
+    Some(Rivals::of(&known).call_for_more(CLEARLY))
 }
 
-/// Whether records are in so many pieces that no filter is worth starting in each.
-fn is_many(prepared: &Prepared<'_>) -> bool {
-    prepared.problem.drive.segments.len() >= MANY
+/// Whether noise inside the plant is a question: not where it is excluded, nor where records are in so
+/// many pieces that no filter is worth starting in each.
+fn may_be_asked(prepared: &Prepared<'_>, allowed: &Allowed, most: usize) -> bool {
+    !allowed.sensor_noise && most > 0 && prepared.problem.drive.segments.len() < MANY
+}
+
+/// The predictor of the model that is diagnosed, and that of the model extended by an answer.
+fn predictors(
+    prepared: &Prepared<'_>,
+    allowed: &Allowed,
+    answer: &Finished,
+) -> Option<(Predictor, Predictor)> {
+    let base = predictor(&prepared.problem, &answer.fitted.model, allowed).ok()?;
+    let system = prepared.context().extend(&answer.fitted.model).ok()?;
+    let known = extended(&base, &system, step(&prepared.problem))?;
+    Some((base, known))
+}
+
+/// Outputs less the innovations of the same samples; as measured where there are none.
+fn foreseen<'e>(y: &[f64], innovations: impl Iterator<Item = &'e f64>) -> Vec<f64> {
+    y.iter().zip(innovations).map(|(y, e)| if e.is_finite() { y - e } else { *y }).collect()
 }
 
 /// What a search over some samples found, on all of these records.
@@ -109,8 +124,7 @@ fn reconsidered(
     answer: Finished,
     watch: &dyn Watch,
 ) -> Answer {
-    let asked = !allowed.sensor_noise && most > 0 && !is_many(prepared);
-    if !asked || watch.stopped() || is_white(prepared, &answer) {
+    if !may_be_asked(prepared, allowed, most) || watch.stopped() || is_white(prepared, &answer) {
         return (answer, None);
     }
     watch.tell(0.9, "asking for noise inside the plant");
@@ -138,9 +152,7 @@ fn by_innovations(
     watch: &dyn Watch,
 ) -> Option<Finished> {
     let problem = &prepared.problem;
-    let base = predictor(problem, &answer.fitted.model, allowed).ok()?;
-    let system = prepared.context().extend(&answer.fitted.model).ok()?;
-    let known = extended(&base, &system, step(problem))?;
+    let (base, known) = predictors(prepared, allowed, answer)?;
     let rivals = Rivals::of(&known);
     if !rivals.call_for_more(CLEARLY) || watch.stopped() {
         return None;
@@ -176,11 +188,12 @@ fn depends(
     let with = extended(base, &system, step(problem))?.starting(found.starts.clone());
     let innovations = with.innovations(&found.noise, true).ok()?.values;
     // what was not foreseen of the next sample, against all up to this one
-    let foreseen = problem.y.iter().zip(&innovations).map(|(y, e)| {
-        let next = e.iter().skip(1).chain(std::iter::once(&f64::NAN));
-        y.iter().zip(next).map(|(y, e)| if e.is_finite() { y - e } else { *y }).collect()
-    });
-    Some(dependence(problem, &prepared.nominal, &foreseen.collect::<Vec<Vec<f64>>>()))
+    let next = problem
+        .y
+        .iter()
+        .zip(&innovations)
+        .map(|(y, e)| foreseen(y, e.iter().skip(1).chain(std::iter::once(&f64::NAN))));
+    Some(dependence(problem, &prepared.nominal, &next.collect::<Vec<Vec<f64>>>()))
 }
 
 /// Parameters moved; along a ridge it is one, whichever.
