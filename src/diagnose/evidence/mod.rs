@@ -2,12 +2,13 @@
 //!
 //! ln p(M | y) = ln p(y | theta, M) - 1/2 ln det(I + W J'J W) + ln p(theta) + ln p(M) + constant:
 //! the likelihood at the fitted numbers theta with the disturbance as a nuisance (`noise`,
-//! `whitener`), the Occam factor of Laplace's approximation (`laplace`; MacKay, Neural Computation 4,
+//! `tails`, `whitener`), the Occam factor of Laplace's approximation (`laplace`; MacKay, Neural Computation 4,
 //! 1992) and the prior of the structure (`prior`).
 
 mod laplace;
 mod noise;
 mod prior;
+mod tails;
 mod whitener;
 
 pub(crate) use laplace::occam;

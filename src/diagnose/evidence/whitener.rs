@@ -3,16 +3,18 @@
 //!
 //! ln p(y) = -1/2 (|W r|^2 - 2 ln det W + N ln 2 pi), r = y - yhat. A free run with autoregressive
 //! noise per output ([`Stretches`]) is one such model; the innovations of a predictor are another: both
-//! are linear filters of residual and columns alike.
+//! are linear filters of residual and columns alike. Where the innovations have heavier tails than normal
+//! ones (`super::tails`), W weighs the samples too.
 
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::noise::Autoregressive;
+use super::tails::Tails;
 use crate::fit::problem::{Part, Problem};
 use crate::statistics::dot;
 
-/// A causal linear filter that makes a disturbance white.
+/// A causal linear filter, with weights of samples, that makes a disturbance white.
 pub(crate) trait Whitener: Send + Sync + std::fmt::Debug {
     /// The filter: a residual or the effect of a cause, outputs one after the other.
     fn whiten(&self, series: &[f64]) -> Vec<f64>;
@@ -78,45 +80,78 @@ impl Stretches {
         r.chunks(self.per_output.max(1)).zip(self.counts.clone())
     }
 
-    fn filter(&self, noise: Vec<Autoregressive>) -> Arc<dyn Whitener> {
-        Arc::new(Coloured { stretches: self.clone(), noise })
+    fn filter(&self, noise: Vec<Autoregressive>) -> Coloured {
+        let tails = vec![None; noise.len()];
+        Coloured { stretches: self.clone(), noise, tails, weights: vec![] }
     }
 
     /// Logarithm of the density of a residual under a disturbance that was estimated elsewhere, but
     /// for a constant.
     pub fn log_density(&self, by: &Coloured, residual: &[f64]) -> f64 {
-        let own = Coloured { stretches: self.clone(), noise: by.noise.clone() };
+        let own = self.filter(by.noise.clone());
         let white = own.whiten(residual);
-        -0.5 * (dot(&white, &white) + own.log_determinant())
+        let normal = 0.5 * (2.0 * std::f64::consts::PI).ln();
+        let of = |(white, tails): (&[f64], &Option<Tails>)| -> f64 {
+            let one = |z: &f64| match tails {
+                None => -0.5 * z * z,
+                Some(tails) => tails.log_density(z * z) + normal,
+            };
+            white.iter().map(one).sum()
+        };
+        let densities = white.chunks(self.per_output.max(1)).zip(&by.tails).map(of);
+        densities.sum::<f64>() - 0.5 * own.log_determinant()
     }
 
-    /// The disturbance of a residual, by its own type.
-    pub fn coloured(&self, residual: &[f64]) -> Coloured {
+    /// The normal disturbance of a residual.
+    pub fn normal(&self, residual: &[f64]) -> Coloured {
         let one = |(r, count): (&[f64], f64)| Autoregressive::estimate(r, &self.spans, count);
-        Coloured { stretches: self.clone(), noise: self.per_output(residual).map(one).collect() }
+        self.filter(self.per_output(residual).map(one).collect())
+    }
+
+    /// The disturbance of a residual by its own type, and by how much heavier tails make it more
+    /// probable.
+    pub fn coloured(&self, residual: &[f64]) -> (Coloured, f64) {
+        let mut found = self.normal(residual);
+        let white = found.whiten(residual);
+        let length = self.per_output.max(1);
+        let both = white.chunks(length).zip(residual.chunks(length));
+        let tails: Vec<_> = both.map(|(white, r)| Tails::of(white, r)).collect();
+        let gain = tails.iter().flatten().map(|(_, gain)| gain).sum();
+        found.tails = tails.into_iter().map(|tails| Some(tails?.0)).collect();
+        if found.tails.iter().any(Option::is_some) {
+            let of = |(white, tails): (&[f64], &Option<Tails>)| -> Vec<f64> {
+                let one = |z: &f64| tails.as_ref().map_or(1.0, |t| t.weight(z * z).sqrt());
+                white.iter().map(one).collect()
+            };
+            found.weights = white.chunks(length).zip(&found.tails).flat_map(of).collect();
+        }
+        (found, gain)
     }
 }
 
 impl NoiseModel for Stretches {
     fn estimate(&self, residual: &[f64]) -> Estimated {
-        let found = self.coloured(residual);
+        let (found, gain) = self.coloured(residual);
         let parts = self.per_output(residual).zip(&found.noise);
-        let log_likelihood =
+        let normal: f64 =
             parts.map(|((r, count), noise)| noise.log_likelihood(r, &self.spans, count)).sum();
-        Estimated { whitener: Arc::new(found), log_likelihood }
+        Estimated { whitener: Arc::new(found), log_likelihood: normal + gain }
     }
 
     fn white(&self, residual: &[f64]) -> Arc<dyn Whitener> {
         let one = |(r, count): (&[f64], f64)| Autoregressive::white(dot(r, r) / count.max(1.0));
-        self.filter(self.per_output(residual).map(one).collect())
+        Arc::new(self.filter(self.per_output(residual).map(one).collect()))
     }
 }
 
-/// Autoregressive noise of every output.
+/// Autoregressive noise of every output, of normal or of t innovations.
 #[derive(Debug, Clone)]
 pub(crate) struct Coloured {
     stretches: Stretches,
     noise: Vec<Autoregressive>,
+    tails: Vec<Option<Tails>>,
+    /// Roots of the weights of the samples that it was estimated from; empty where all are 1.
+    weights: Vec<f64>,
 }
 
 impl Coloured {
@@ -137,11 +172,18 @@ impl Coloured {
 
 impl Whitener for Coloured {
     fn whiten(&self, series: &[f64]) -> Vec<f64> {
-        self.each(series, Autoregressive::whiten)
+        let mut white = self.each(series, Autoregressive::whiten);
+        white.iter_mut().zip(&self.weights).for_each(|(z, weight)| *z *= weight);
+        white
     }
 
     fn colour(&self, white: &[f64]) -> Vec<f64> {
-        self.each(white, Autoregressive::colour)
+        if self.weights.is_empty() {
+            return self.each(white, Autoregressive::colour);
+        }
+        let even: Vec<f64> =
+            white.iter().zip(&self.weights).map(|(z, weight)| z / weight).collect();
+        self.each(&even, Autoregressive::colour)
     }
 
     fn log_determinant(&self) -> f64 {
@@ -150,7 +192,7 @@ impl Whitener for Coloured {
     }
 
     fn is_coloured(&self) -> bool {
-        self.noise.iter().any(|noise| noise.order() > 0)
+        self.noise.iter().any(|noise| noise.order() > 0) || !self.weights.is_empty()
     }
 }
 
@@ -188,7 +230,7 @@ mod tests {
         assert!(back.iter().zip(&r).all(|(a, b)| (a - b).abs() < 1e-9));
         // at the variance that suits it best, the density is the likelihood but for what is constant
         // and for what the coefficients take
-        let density = stretches.log_density(&stretches.coloured(&r), &r);
+        let density = stretches.log_density(&stretches.coloured(&r).0, &r);
         let rest = found.log_likelihood - density;
         let spent = 0.5 * 900f64.ln() * found_order(&stretches, &r) as f64;
         assert!((rest - (450.0 - spent)).abs() < 2.0, "{rest} {spent}");
@@ -196,6 +238,6 @@ mod tests {
     }
 
     fn found_order(stretches: &Stretches, r: &[f64]) -> usize {
-        stretches.coloured(r).noise[0].order()
+        stretches.normal(r).noise[0].order()
     }
 }

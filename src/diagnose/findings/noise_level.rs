@@ -7,7 +7,7 @@
 //! with e^2 (Econometrica 50, 1982). Samples far beyond the usual level are then no outliers, unless
 //! they lie as far beyond those near them.
 
-use crate::evidence::{NoiseModel, Stretches};
+use crate::evidence::{Stretches, Whitener};
 use crate::findings::context::Context;
 use crate::findings::note::{Follows, Note};
 use crate::fit::finished::Finished;
@@ -35,8 +35,7 @@ impl Context<'_, '_> {
     /// The noise of every output as far as its level changes.
     pub fn noise_levels(&self, chosen: &Finished) -> Vec<Option<Note>> {
         let residual = self.problem.residual(&chosen.y, Part::All);
-        let white = Stretches::new(self.problem, Part::All).estimate(&residual).whitener;
-        let white = white.whiten(&residual);
+        let white = Stretches::new(self.problem, Part::All).normal(&residual).whiten(&residual);
         let samples: Vec<usize> = self.problem.samples(Part::All).collect();
         let of = |(o, e): (usize, &[f64])| self.noise_level(chosen, o, e, &samples);
         white.chunks(samples.len().max(1)).enumerate().map(of).collect()

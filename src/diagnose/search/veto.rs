@@ -36,7 +36,7 @@ fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<(us
     let outputs = study.problem.simulate_all(&models, Grain::Coarse);
     let density = |(fit, y): (&Fit, crate::fit::problem::Simulated)| {
         let residual = study.problem.residual(&y?, Part::Choose);
-        let value = held.log_density(&study.disturbance.coloured(&fit.residual), &residual);
+        let value = held.log_density(&study.disturbance.coloured(&fit.residual).0, &residual);
         value.is_finite().then_some(value)
     };
     let fits = std::iter::once(fit).chain(&without);

@@ -162,13 +162,15 @@ pub(super) fn supposed_right(held: &[String]) -> Option<String> {
     })
 }
 
-/// A cause that data refute which were not fitted.
+/// A cause that data refute which were not fitted, and what the test data say to that.
 pub fn withdrawn(withdrawn: &Withdrawn) -> String {
+    let ratio = withdrawn.test_rmse_ratio;
+    let test = if ratio > 1.0 { "and so do the test data" } else { "though the test data do not" };
     format!(
-        "Withdrawn: {}. Data that were not fitted speak against it (test RMSE times {} with it), and \
-         the extended model does not have it.",
+        "Withdrawn: {}. The part of the records that was not fitted speaks against it, {test} (RMSE \
+         times {} with it); the extended model does not have it.",
         super::place_of(&withdrawn.cause),
-        number(withdrawn.test_rmse_ratio, None)
+        number(ratio, None)
     )
 }
 
