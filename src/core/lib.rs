@@ -33,8 +33,8 @@ pub mod __private {
 pub mod prelude {
     #[doc(no_inline)]
     pub use crate::effect::{
-        CandidateEffect, Effect, EffectCard, Felt, Knob, Mechanism, Named, Needs, Places, Role,
-        Search, ShapeOf, SignRule, Size, UnitRule, View,
+        Arguments, CandidateEffect, Effect, EffectCard, EffectParameter, Mechanism, Named, Needs,
+        Places, Role, Search, ShapeOf, SignRule, Size, UnitRule, View,
     };
     #[doc(no_inline)]
     pub use crate::model::{At, Fault, Physics, Signals, StateSpaceModel};

@@ -16,8 +16,8 @@ mod unit;
 mod view;
 mod written;
 
-pub use card::{EffectCard, Knob, Mechanism, Named, Needs, Places, Role, SignRule};
-pub use law::{CandidateEffect, Effect, Felt};
+pub use card::{EffectCard, EffectParameter, Mechanism, Named, Needs, Places, Role, SignRule};
+pub use law::{Arguments, CandidateEffect, Effect};
 pub use properties::{ShapeOf, Size};
 pub use search::Search;
 pub use unit::UnitRule;

@@ -109,15 +109,15 @@ pub(super) fn responses(record: &Record) -> Vec<Response> {
         let known = errors.len() < 2 || errors.last().is_none_or(|left| *left < KNOWN);
         for output in &record.outputs {
             let y = &output.values[range.clone()];
-            let told = if known { None } else { lags(u, y, &filter) };
-            let delay_samples = told.and_then(|(delay, _)| delay);
+            let estimate = if known { None } else { lags(u, y, &filter) };
+            let delay_samples = estimate.and_then(|(delay, _)| delay);
             found.push(Response {
                 input: input.name.clone(),
                 output: output.name.clone(),
                 delay_samples,
                 delay: delay_samples.map(|samples| samples as f64 * record.sampling_time),
                 input_is_known: known,
-                reacts: told.filter(|_| !repeats).map(|(_, reacts)| reacts),
+                reacts: estimate.filter(|_| !repeats).map(|(_, reacts)| reacts),
             });
         }
     }

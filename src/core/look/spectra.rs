@@ -177,8 +177,8 @@ impl Spectra {
                 continue;
             }
             // a Hann window spreads a line over its neighbours
-            let beside = (1..bins).filter(|i| (3..=SURROUNDINGS).contains(&i.abs_diff(k)));
-            let mut others: Vec<f64> = beside.map(|i| density[i]).collect();
+            let neighbours = (1..bins).filter(|i| (3..=SURROUNDINGS).contains(&i.abs_diff(k)));
+            let mut others: Vec<f64> = neighbours.map(|i| density[i]).collect();
             others.sort_by(f64::total_cmp);
             let floor = others.get(others.len() / 2).copied().unwrap_or(f64::INFINITY);
             // on both sides, so that an edge of a band is no line

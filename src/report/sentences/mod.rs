@@ -50,9 +50,9 @@ pub fn headline(finding: &Finding) -> String {
 
 /// Causes as they are told: those with a size first, in order of discovery.
 fn ordered(finding: &Finding) -> Vec<&Cause> {
-    let (told, rest): (Vec<&Cause>, Vec<&Cause>) =
+    let (first, rest): (Vec<&Cause>, Vec<&Cause>) =
         finding.causes.iter().partition(|cause| is_resolved(cause));
-    told.into_iter().chain(rest).collect()
+    first.into_iter().chain(rest).collect()
 }
 
 /// Everything that a terminal shows of a finding, line by line.
