@@ -4,6 +4,8 @@
 // plug-ins and examples say `lacuna::`, wherever they are compiled
 extern crate self as lacuna;
 
+use lacuna_fourier as fourier;
+
 pub mod data;
 #[doc(hidden)]
 pub mod digits;

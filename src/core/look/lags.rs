@@ -8,9 +8,8 @@
 //! feedback; a record whose input repeats cannot show it, because its future is its past.
 
 use crate::data::Record;
+use crate::fourier::{self, Complex};
 use crate::statistics::levinson;
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -55,8 +54,7 @@ fn covariance(a: &[f64], b: &[f64], lags: usize) -> (Vec<f64>, Vec<f64>) {
         return (vec![], vec![]);
     }
     let size = (2 * n).next_power_of_two();
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, inverse) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
+    let (forward, inverse) = (fourier::forward(size), fourier::inverse(size));
     let transform = |x: &[f64]| {
         let known: Vec<f64> = x.iter().copied().filter(|v| v.is_finite()).collect();
         let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;

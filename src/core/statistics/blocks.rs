@@ -1,10 +1,9 @@
 //! Tests that stay honest when residuals are not white: everything is judged block by
 //! block, with blocks as long as the errors remember.
 
-use realfft::num_complex::Complex;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-use super::plans;
+use crate::fourier::{self, Complex};
 
 /// Blocks at most and at least.
 const MOST: usize = 40;
@@ -60,7 +59,7 @@ pub fn autocorrelation(x: &[f64], lags: usize) -> Vec<f64> {
     let n = x.len();
     let size = (2 * n).next_power_of_two();
     let centre = mean(x);
-    let (forward, backward) = (plans::forward(size), plans::inverse(size));
+    let (forward, backward) = (fourier::forward(size), fourier::inverse(size));
     let mut time: Vec<f64> = x.iter().map(|v| v - centre).collect();
     time.resize(size, 0.0);
     let mut spectrum = forward.make_output_vec();

@@ -33,6 +33,7 @@ use crate::diagnose::{Cause, Finding, Verdict};
 
 /// The sentences that come first: the causes whose size is told from none, then those whose is not;
 /// or why there are none.
+#[doc(hidden)]
 pub fn headline(finding: &Finding) -> String {
     let lines = match finding.verdict {
         Verdict::NothingFound => vec![rest::nothing(finding)],

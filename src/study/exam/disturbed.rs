@@ -102,7 +102,7 @@ impl Machine {
             for _ in 0..ROUNDS {
                 let mut forces = vec![vec![0.0; driven.len()]; channels];
                 forces[channel] = unit.iter().map(|w| size * w).collect();
-                let disturbance = Disturbance { before: None, forces: forces };
+                let disturbance = Disturbance { before: None, forces };
                 let moved = self.outputs_disturbed(of, driven, &disturbance)?;
                 let moved = moved.map_or(f64::INFINITY, |y| {
                     let of = |(o, y): (usize, &Vec<f64>)| {
