@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn twins_are_told_apart_by_nothing_and_that_is_said() {
+    fn twins_are_distinguished_by_nothing_and_that_is_stated() {
         let v = "v".to_string();
         let [a, b] = ["force", "u"].map(|into| named("linear", into, Some(&v)));
         let [lag, delay] = ["lag", "delay"].map(|effect| named(effect, "u", None));

@@ -35,7 +35,7 @@ impl MonteCarlo {
         folder: &Path,
         watch: &dyn Watch,
     ) -> Result<usize, StudyError> {
-        let (root, last_shown) = (folder, Mutex::new(Instant::now()));
+        let (root, last_line) = (folder, Mutex::new(Instant::now()));
         let folder = folder.join("runs");
         std::fs::create_dir_all(&folder).map_err(|error| StudyError::write(&folder, error))?;
         let signals = inputs.system.signals();
@@ -79,7 +79,7 @@ impl MonteCarlo {
                     Ok(Some(_)) => {
                         progress[number].store(PARTS, Ordering::Relaxed);
                         finished.fetch_add(1, Ordering::Relaxed);
-                        show(root, &last_shown);
+                        show(root, &last_line);
                     }
                     Ok(None) => return,
                     Err(error) => {
@@ -108,9 +108,9 @@ impl MonteCarlo {
 }
 
 /// Writes the page of what is done so far, not more often than [`REWRITTEN`].
-fn show(folder: &Path, last_shown: &Mutex<Instant>) {
+fn show(folder: &Path, last_line: &Mutex<Instant>) {
     // who finds another one at it leaves it to that one
-    let Ok(mut last) = last_shown.try_lock() else { return };
+    let Ok(mut last) = last_line.try_lock() else { return };
     if last.elapsed() < REWRITTEN {
         return;
     }

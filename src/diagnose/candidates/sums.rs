@@ -66,7 +66,7 @@ mod tests {
     use crate::search::fixture::fit_of;
 
     #[test]
-    fn laws_of_one_place_stand_together() {
+    fn laws_of_one_place_are_one_cause() {
         let mut model = fit_of(&["a", "b", "a", "c"], vec![1.0; 9]).model;
         model.added.iter_mut().for_each(|added| added.parameters[0] = 3.0);
         assert_eq!(model.places(), vec![vec![0, 2], vec![1], vec![3]]);

@@ -1,4 +1,4 @@
-//! Errors that allow for parameters to be wrong that a story still trusts.
+//! Errors that allow for parameters to be wrong that a hypothesis still trusts.
 
 use crate::candidates::candidate::Wire;
 use crate::estimate::{Combination, unseen};
@@ -16,8 +16,8 @@ use crate::statistics::{add_to_basis, project};
 const STEP: f64 = 1e-5;
 
 impl Tracks<'_, '_> {
-    /// Combinations of parameters that change nothing, where a story names one of them: as `estimate`
-    /// tells them, whatever the story itself holds.
+    /// Combinations of parameters that change nothing, where a hypothesis names one of them: as `estimate`
+    /// reports them, whatever the hypothesis itself holds.
     pub(crate) fn undetermined(&self, answer: &Finished) -> Vec<Combination> {
         let model = &answer.fitted.model;
         let is_named = |added: &Added| matches!(added.cause.wire, Wire::Parameter(_));
@@ -62,7 +62,7 @@ impl Tracks<'_, '_> {
         unseen(&names, &relative)
     }
 
-    /// What is known of a story's numbers where it says itself that a parameter of the model is
+    /// What is known of the numbers of a hypothesis where it says itself that a parameter of the model is
     /// wrong: those that it still trusts may be as well, and what it found makes up for them.
     pub(crate) fn doubting(&self, answer: Finished) -> Finished {
         let model = &answer.fitted.model;
