@@ -27,7 +27,7 @@ effect.coulomb_friction = { level = -0.04, width = 0.01 }
 struct Steps;
 
 impl Watch for Steps {
-    fn tell(&self, done: f64, doing: &str) {
+    fn report(&self, done: f64, doing: &str) {
         println!("  {:3.0} % {doing}", 100.0 * done);
     }
 

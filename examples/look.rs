@@ -69,8 +69,8 @@ fn log() -> Result<String, Box<dyn std::error::Error>> {
     let mut angle = 0.0;
     for (k, force) in multisine.generate(800, 0.005, 7)?.iter().enumerate() {
         angle += 0.1 * (force - angle);
-        let shown = if k == 300 || k == 301 { String::new() } else { format!("{angle:.6}") };
-        text += &format!("{};{force:.6};{shown};12.1\n", 5 * k);
+        let reading = if k == 300 || k == 301 { String::new() } else { format!("{angle:.6}") };
+        text += &format!("{};{force:.6};{reading};12.1\n", 5 * k);
     }
     Ok(text)
 }

@@ -30,15 +30,18 @@ impl Default for Magnet {
 impl Effect for Magnet {
     fn card(&self) -> EffectCard {
         let unit = UnitRule::ChannelPerCoordinate(1);
-        let coefficient = Knob::coefficient("coefficient", self.coefficient, unit);
-        EffectCard::law(vec![coefficient, Knob::shape("reach", self.reach, UnitRule::Coordinate)])
+        let coefficient = EffectParameter::coefficient("coefficient", self.coefficient, unit);
+        EffectCard::law(vec![
+            coefficient,
+            EffectParameter::shape("reach", self.reach, UnitRule::Coordinate),
+        ])
     }
     fn title(&self, _: &Named) -> String {
         "A magnet".into()
     }
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let (&[c, reach], z) = (at.knobs(), at.z());
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let (&[c, reach], z) = (at.parameters(), at.z());
         let far = (z / reach) * (z / reach) + 1.0;
         c * z / (far * far)
     }

@@ -71,7 +71,7 @@ pub use lacuna_study as study;
 pub mod diagnose {
     #[doc(inline)]
     pub use lacuna_diagnose::{
-        Cause, DiagnoseError, Diagnosis, Distortion, Finding, Outlook, Planner, Verdict, distortion,
+        Cause, DiagnoseError, Diagnosis, Finding, Outlook, Planner, Verdict, distortion,
     };
     // the types of a finding's fields, which are reached through it
     #[doc(hidden)]

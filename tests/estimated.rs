@@ -39,7 +39,9 @@ fn a_named_parameter_that_another_makes_up_for_has_no_error_bar_either() {
     let product = product.unwrap_or_else(|| panic!("{finding}"));
     assert_eq!(product.parameters[0].std_error, None, "{finding}");
     let told = |note: &Note| match note {
-        Note::CannotTell { together } => together.contains("b by ") && together.contains("c by "),
+        Note::Undetermined { parameters } => {
+            parameters.contains("b by ") && parameters.contains("c by ")
+        }
         _ => false,
     };
     assert!(finding.notes.iter().any(told), "{:?}", finding.notes);

@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 mod circles;
+mod words;
 
 /// Files of one concept that needs more than 300 lines; 450 are the limit.
 const LONGER: [&str; 14] = [

@@ -99,8 +99,11 @@ fn a_curve_is_a_law_of_the_library_or_has_no_name() {
     let friction = read(&|v| -1.5 * (v / 0.2).tanh());
     let law = friction.named().unwrap();
     assert_eq!((law.parts.len(), &law.parts[0].effect[..]), (1, "coulomb_friction"));
-    let knobs = law.parts[0].law.card().values();
-    assert!((knobs[0] + 1.5).abs() < 0.01 && (knobs[1] - 0.2).abs() < 0.01, "{knobs:?}");
+    let parameters = law.parts[0].law.card().values();
+    assert!(
+        (parameters[0] + 1.5).abs() < 0.01 && (parameters[1] - 0.2).abs() < 0.01,
+        "{parameters:?}"
+    );
     assert!(friction.share > 0.99, "{law:?}");
     // a bump of Stribeck's on top is as good as none: all that is left open is whether it is there
     let dry: f64 = (friction.candidates.iter())

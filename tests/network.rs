@@ -257,7 +257,7 @@ fn it_is_estimated_and_diagnosed_like_any_other_effect() {
     let (before, after) = found.nrmse;
     println!("{before} {after}");
     assert!(before > 1e-2 && after < 0.02 * before, "{before} {after}");
-    assert_eq!(found.parameters.len(), learned().card().knobs.len());
+    assert_eq!(found.parameters.len(), learned().card().parameters.len());
     let record = PENDULUM.noisy_record(&machine, Conditions { n: 3000, seed: 9, ..USUAL });
     let finding = Diagnosis::of(&machine).run(&[record], None, &()).unwrap();
     println!("{finding}");

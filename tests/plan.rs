@@ -65,18 +65,18 @@ fn what_looks_alike_is_said_with_the_experiment_that_tells() {
     // force moves both masses as one, which is what an offset of the sensor looks like
     let offsets = pair(&outlook, "bias into force_1", "bias into y").expect("offsets look alike");
     assert!(offsets.rho > 0.999 && offsets.track == Track::ParametersTrusted, "{offsets:?}");
-    assert!(offsets.told_apart_by.iter().any(|by| by == "sensor p_1"), "{offsets:?}");
-    assert!(!offsets.told_apart_by.iter().any(|by| by.starts_with("level")), "{offsets:?}");
+    assert!(offsets.distinguished_by.iter().any(|by| by == "sensor p_1"), "{offsets:?}");
+    assert!(!offsets.distinguished_by.iter().any(|by| by.starts_with("level")), "{offsets:?}");
     // alike to first order, so no experiment of this kind tells; that is said as well
     let late = pair(&outlook, "lag into u of u", "delay into u of u").expect("late inputs");
     assert!(late.rho > 0.99, "{late:?}");
     // an offset of the input is an offset of the force that it is
     let twins = pair(&outlook, "bias into u", "bias into force_1").expect("one force");
-    assert!(twins.twins && twins.told_apart_by.is_empty(), "{twins:?}");
+    assert!(twins.twins && twins.distinguished_by.is_empty(), "{twins:?}");
     let said = sentences::pair(twins);
     assert!(said.contains("no experiment with these inputs tells them apart"), "{said}");
     // what another input tells apart is no twin
-    let told = |p: &&LookAlikes| p.told_apart_by.iter().any(|by| !by.starts_with("sensor"));
+    let told = |p: &&LookAlikes| p.distinguished_by.iter().any(|by| !by.starts_with("sensor"));
     let told: Vec<_> = outlook.look_alikes.iter().filter(told).collect();
     assert!(!told.is_empty() && told.iter().all(|pair| !pair.twins), "{told:?}");
     // a place that is the same in the equations
@@ -89,14 +89,14 @@ fn what_looks_alike_is_said_with_the_experiment_that_tells() {
     // a force on the second mass is another matter
     assert!(pair(&outlook, "bias into y", "cubic into joint_2 of stretch_2").is_none());
     let best = &outlook.experiments[0];
-    assert!(best.tells_apart > 0 && best.failed.is_none(), "{best:?}");
+    assert!(best.distinguishes > 0 && best.failed.is_none(), "{best:?}");
     let names: Vec<&str> = outlook.experiments.iter().map(|e| e.name.as_str()).collect();
     for name in ["level x0.5", "level x2", "offset", "lower band", "upper band", "sensor p_1"] {
         assert!(names.contains(&name), "no `{name}` in {names:?}");
     }
-    let told = outlook.look_alikes.iter().flat_map(|pair| &pair.told_apart_by);
+    let told = outlook.look_alikes.iter().flat_map(|pair| &pair.distinguished_by);
     let count = told.filter(|name| **name == best.name).count();
-    assert_eq!(count, best.tells_apart + best.tells_apart_free);
+    assert_eq!(count, best.distinguishes + best.distinguishes_free);
     // every two of a set are alike
     for set in outlook.sets() {
         for (i, a) in set.iter().enumerate() {

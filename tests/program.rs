@@ -3,6 +3,8 @@
 //! One binary for all, because linking costs more than compiling.
 
 mod cli;
+#[path = "../src/cli/command_line.rs"]
+mod command_line;
 mod exam_cli;
 mod exam_machines;
 mod interrupts;

@@ -59,8 +59,8 @@ impl Case {
             tests.push((*name, source.read(folder)?));
         }
         // a record that has no other is split by the diagnosis itself
-        let alone = self.tests.first().is_some_and(|(_, source)| *source == self.train);
-        let test = tests.first().map(|(_, record)| record).filter(|_| !alone);
+        let same_source = self.tests.first().is_some_and(|(_, source)| *source == self.train);
+        let test = tests.first().map(|(_, record)| record).filter(|_| !same_source);
         let diagnosis = Diagnosis::of(&model).init(Init::Samples(self.init));
         let finding = diagnosis.run(&[train], test, &())?;
         let (mut before, mut after) = (vec![], vec![]);
@@ -108,9 +108,9 @@ fn told(finding: &Finding) -> String {
     let mut all = vec![];
     for cause in &finding.causes {
         let others: Vec<String> = cause.indistinguishable.iter().map(ToString::to_string).collect();
-        let beside =
+        let alternatives =
             if others.is_empty() { String::new() } else { format!(" (or {})", others.join(", ")) };
-        all.push(format!("{}{beside}", sentences::cause(cause)));
+        all.push(format!("{}{alternatives}", sentences::cause(cause)));
     }
     if all.is_empty() { sentences::headline(finding) } else { all.join("<br>") }
 }

@@ -12,7 +12,8 @@ pub struct Backlash {
 
 impl Effect for Backlash {
     fn card(&self) -> EffectCard {
-        let width = Knob::shape("width", self.width, UnitRule::Coordinate).neutral_at(0.0);
+        let width =
+            EffectParameter::shape("width", self.width, UnitRule::Coordinate).neutral_at(0.0);
         EffectCard::law(vec![width])
             .by(Mechanism::Play)
             .places(Places { input: true, output: true, ..Places::default() })
@@ -25,7 +26,7 @@ impl Effect for Backlash {
 
     /// Carried out by the system, which remembers where the play stands.
     #[inline(always)]
-    fn law<R: Real>(&self, _: &Felt<R>, _: &mut [R]) -> R {
+    fn law<R: Real>(&self, _: &Arguments<R>, _: &mut [R]) -> R {
         R::constant(0.0)
     }
 

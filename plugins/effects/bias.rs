@@ -12,7 +12,7 @@ pub struct Bias {
 
 impl Effect for Bias {
     fn card(&self) -> EffectCard {
-        EffectCard::law(vec![Knob::coefficient("value", self.value, UnitRule::Channel)])
+        EffectCard::law(vec![EffectParameter::coefficient("value", self.value, UnitRule::Channel)])
             .needs(Needs::Nothing)
             .places(Places { channel: true, input: true, output: true, ..Places::default() })
             .of_an_instrument()
@@ -24,8 +24,8 @@ impl Effect for Bias {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        at.knobs[0]
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        at.parameters[0]
     }
 }
 

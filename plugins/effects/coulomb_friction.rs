@@ -21,8 +21,8 @@ impl Default for CoulombFriction {
 impl Effect for CoulombFriction {
     fn card(&self) -> EffectCard {
         EffectCard::law(vec![
-            Knob::coefficient("level", self.level, UnitRule::Channel),
-            Knob::shape("width", self.width, UnitRule::Coordinate),
+            EffectParameter::coefficient("level", self.level, UnitRule::Channel),
+            EffectParameter::shape("width", self.width, UnitRule::Coordinate),
         ])
         .needs(Needs::Velocity)
         .sign(SignRule::Opposing { polarity: 1 })
@@ -41,8 +41,8 @@ impl Effect for CoulombFriction {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[level, width] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[level, width] = at.parameters();
         // a step where the width is 0, not a number divided by it
         level * (at.z() / width.max(R::constant(1e-30))).tanh()
     }

@@ -19,7 +19,7 @@ macro_rules! fault {
 
         impl Effect for $name {
             fn card(&self) -> EffectCard {
-                EffectCard::law(vec![Knob::coefficient("value", self.value, UnitRule::None)])
+                EffectCard::law(vec![EffectParameter::coefficient("value", self.value, UnitRule::None)])
                     .by(Mechanism::Data)
                     .needs(Needs::Nothing)
                     .places(Places::default())
@@ -32,7 +32,7 @@ macro_rules! fault {
 
             /// The data are at fault, not the model.
             #[inline(always)]
-            fn law<R: Real>(&self, _: &Felt<R>, _: &mut [R]) -> R {
+            fn law<R: Real>(&self, _: &Arguments<R>, _: &mut [R]) -> R {
                 R::constant(0.0)
             }
         }

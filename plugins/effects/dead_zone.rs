@@ -20,8 +20,8 @@ fn one() -> f64 {
 impl Effect for DeadZone {
     fn card(&self) -> EffectCard {
         let mut card = EffectCard::law(vec![
-            Knob::coefficient("slope", self.slope, UnitRule::ChannelPerCoordinate(1)),
-            Knob::shape("width", self.width, UnitRule::Coordinate).neutral_at(0.0),
+            EffectParameter::coefficient("slope", self.slope, UnitRule::ChannelPerCoordinate(1)),
+            EffectParameter::shape("width", self.width, UnitRule::Coordinate).neutral_at(0.0),
         ])
         .places(Places { channel: true, input: true, output: true, ..Places::default() })
         .piecewise_linear()
@@ -40,8 +40,8 @@ impl Effect for DeadZone {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[slope, width] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[slope, width] = at.parameters();
         -(slope * at.z().max(-width).min(width))
     }
 

@@ -12,9 +12,9 @@ pub struct Delay {
 
 impl Effect for Delay {
     fn card(&self) -> EffectCard {
-        let mut knob = Knob::coefficient("delay", self.delay, UnitRule::Second);
-        knob.min = 0.0;
-        EffectCard::law(vec![knob])
+        let mut parameter = EffectParameter::coefficient("delay", self.delay, UnitRule::Second);
+        parameter.min = 0.0;
+        EffectCard::law(vec![parameter])
             .by(Mechanism::Delay)
             .places(Places { input: true, output: true, ..Places::default() })
             .sign(SignRule::Positive)
@@ -28,7 +28,7 @@ impl Effect for Delay {
 
     /// Carried out by the system, which remembers the past.
     #[inline(always)]
-    fn law<R: Real>(&self, _: &Felt<R>, _: &mut [R]) -> R {
+    fn law<R: Real>(&self, _: &Arguments<R>, _: &mut [R]) -> R {
         R::constant(0.0)
     }
 

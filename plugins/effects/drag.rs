@@ -13,7 +13,7 @@ pub struct Drag {
 impl Effect for Drag {
     fn card(&self) -> EffectCard {
         let unit = UnitRule::ChannelPerCoordinate(2);
-        EffectCard::law(vec![Knob::coefficient("coefficient", self.coefficient, unit)])
+        EffectCard::law(vec![EffectParameter::coefficient("coefficient", self.coefficient, unit)])
             .needs(Needs::Velocity)
             .sign(SignRule::Opposing { polarity: 1 })
             .friction()
@@ -25,8 +25,8 @@ impl Effect for Drag {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[c] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[c] = at.parameters();
         c * at.z() * at.z().abs()
     }
 }

@@ -12,10 +12,14 @@ pub struct Drift {
 
 impl Effect for Drift {
     fn card(&self) -> EffectCard {
-        EffectCard::law(vec![Knob::coefficient("rate", self.rate, UnitRule::ChannelPerSecond)])
-            .needs(Needs::Time)
-            .places(Places { output: true, parameter: true, ..Places::default() })
-            .rank(3)
+        EffectCard::law(vec![EffectParameter::coefficient(
+            "rate",
+            self.rate,
+            UnitRule::ChannelPerSecond,
+        )])
+        .needs(Needs::Time)
+        .places(Places { output: true, parameter: true, ..Places::default() })
+        .rank(3)
     }
 
     fn title(&self, _: &Named) -> String {
@@ -23,8 +27,8 @@ impl Effect for Drift {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        at.knobs[0] * at.z()
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        at.parameters[0] * at.z()
     }
 }
 

@@ -23,12 +23,12 @@ impl Default for ExtraMode {
 impl Effect for ExtraMode {
     fn card(&self) -> EffectCard {
         EffectCard::law(vec![
-            Knob::coefficient("participation", self.participation, UnitRule::Inertia),
-            Knob::shape("frequency", self.frequency, UnitRule::RadianPerSecond),
-            Knob::shape("damping", self.damping, UnitRule::None),
+            EffectParameter::coefficient("participation", self.participation, UnitRule::Inertia),
+            EffectParameter::shape("frequency", self.frequency, UnitRule::RadianPerSecond),
+            EffectParameter::shape("damping", self.damping, UnitRule::None),
         ])
         .needs(Needs::Motion)
-        .places(Places { channel: true, beside: true, ..Places::default() })
+        .places(Places { channel: true, feedthrough: true, ..Places::default() })
         .states(2)
         .sign(SignRule::Along)
         .resonance("frequency")
@@ -42,8 +42,8 @@ impl Effect for ExtraMode {
     /// States: displacement relative to the place where it sits, and own velocity. Shaken
     /// by a motion it is an absorber; driven by a force it is a mode beside the model.
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, rates: &mut [R]) -> R {
-        let &[participation, frequency, damping] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, rates: &mut [R]) -> R {
+        let &[participation, frequency, damping] = at.parameters();
         let &[q, v] = at.states();
         let shaken = if at.has_rate { at.rate } else { R::constant(0.0) };
         let relative = v - shaken;

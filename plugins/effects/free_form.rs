@@ -14,10 +14,10 @@ pub struct FreeForm {
 
 impl Effect for FreeForm {
     fn card(&self) -> EffectCard {
-        let knob = |(i, value): (usize, &f64)| {
-            Knob::coefficient(format!("values.{i}"), *value, UnitRule::Channel)
+        let parameter = |(i, value): (usize, &f64)| {
+            EffectParameter::coefficient(format!("values.{i}"), *value, UnitRule::Channel)
         };
-        let mut card = EffectCard::law(self.values.iter().enumerate().map(knob).collect());
+        let mut card = EffectCard::law(self.values.iter().enumerate().map(parameter).collect());
         card.places = Places::default();
         card.shape_of(ShapeOf::FreeCurve).rank(9)
     }
@@ -38,11 +38,11 @@ impl Effect for FreeForm {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
         let (zero, one) = (R::constant(0.0), R::constant(1.0));
-        let Some(&first) = at.knobs.first() else { return zero };
+        let Some(&first) = at.parameters.first() else { return zero };
         let mut w = first;
-        for (pair, ends) in at.knobs.windows(2).zip(self.knots.windows(2)) {
+        for (pair, ends) in at.parameters.windows(2).zip(self.knots.windows(2)) {
             let way = ((at.z() - ends[0]) / (ends[1] - ends[0])).max(zero).min(one);
             w += (pair[1] - pair[0]) * way;
         }

@@ -12,7 +12,7 @@ pub struct Gain {
 
 impl Effect for Gain {
     fn card(&self) -> EffectCard {
-        EffectCard::law(vec![Knob::coefficient("gain", self.gain, UnitRule::None)])
+        EffectCard::law(vec![EffectParameter::coefficient("gain", self.gain, UnitRule::None)])
             .places(Places { input: true, output: true, ..Places::default() })
             .of_an_instrument()
             .stated_as(Size::Factor("gain"))
@@ -24,8 +24,8 @@ impl Effect for Gain {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        at.knobs[0] * at.z()
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        at.parameters[0] * at.z()
     }
 }
 

@@ -17,9 +17,9 @@ pub struct Harmonic {
 impl Effect for Harmonic {
     fn card(&self) -> EffectCard {
         EffectCard::law(vec![
-            Knob::coefficient("a", self.a, UnitRule::Channel),
-            Knob::coefficient("b", self.b, UnitRule::Channel),
-            Knob::shape("n", self.n, UnitRule::PerCoordinate),
+            EffectParameter::coefficient("a", self.a, UnitRule::Channel),
+            EffectParameter::coefficient("b", self.b, UnitRule::Channel),
+            EffectParameter::shape("n", self.n, UnitRule::PerCoordinate),
         ])
         .needs(Needs::AngleOrTime)
         .places(Places { channel: true, input: true, output: true, ..Places::default() })
@@ -33,8 +33,8 @@ impl Effect for Harmonic {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[a, b, n] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[a, b, n] = at.parameters();
         let angle = n * at.z();
         a * angle.sin() + b * angle.cos()
     }

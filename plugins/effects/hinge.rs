@@ -23,11 +23,15 @@ impl Default for Hinge {
 impl Effect for Hinge {
     fn card(&self) -> EffectCard {
         let any = (f64::NEG_INFINITY, f64::INFINITY);
-        let mut side = Knob::shape("side", self.side, UnitRule::None).within(-1.0, 1.0);
+        let mut side = EffectParameter::shape("side", self.side, UnitRule::None).within(-1.0, 1.0);
         side.role = Role::Choice;
         EffectCard::law(vec![
-            Knob::coefficient("coefficient", self.coefficient, UnitRule::ChannelPerCoordinate(1)),
-            Knob::shape("start", self.start, UnitRule::Coordinate).within(any.0, any.1),
+            EffectParameter::coefficient(
+                "coefficient",
+                self.coefficient,
+                UnitRule::ChannelPerCoordinate(1),
+            ),
+            EffectParameter::shape("start", self.start, UnitRule::Coordinate).within(any.0, any.1),
             side,
         ])
         .places(Places { channel: true, input: true, output: true, ..Places::default() })
@@ -44,8 +48,8 @@ impl Effect for Hinge {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[c, start, side] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[c, start, side] = at.parameters();
         c * (side * (at.z() - start)).max(R::constant(0.0))
     }
 

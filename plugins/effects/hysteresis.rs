@@ -18,9 +18,10 @@ impl Effect for Hysteresis {
     fn card(&self) -> EffectCard {
         let any = (f64::NEG_INFINITY, f64::INFINITY);
         EffectCard::law(vec![
-            Knob::coefficient("alpha", self.alpha, UnitRule::ChannelPerCoordinate(1)),
-            Knob::shape("beta", self.beta, UnitRule::PerCoordinate),
-            Knob::shape("gamma", self.gamma, UnitRule::PerCoordinate).within(any.0, any.1),
+            EffectParameter::coefficient("alpha", self.alpha, UnitRule::ChannelPerCoordinate(1)),
+            EffectParameter::shape("beta", self.beta, UnitRule::PerCoordinate),
+            EffectParameter::shape("gamma", self.gamma, UnitRule::PerCoordinate)
+                .within(any.0, any.1),
         ])
         .needs(Needs::CoordinateWithRate)
         .states(1)
@@ -33,8 +34,8 @@ impl Effect for Hysteresis {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, rates: &mut [R]) -> R {
-        let &[alpha, beta, gamma] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, rates: &mut [R]) -> R {
+        let &[alpha, beta, gamma] = at.parameters();
         let s = at.states[0];
         rates[0] = alpha * at.rate - beta * at.rate.abs() * s - gamma * at.rate * s.abs();
         -s

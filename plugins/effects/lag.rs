@@ -12,9 +12,10 @@ pub struct Lag {
 
 impl Effect for Lag {
     fn card(&self) -> EffectCard {
-        let mut knob = Knob::coefficient("time_constant", self.time_constant, UnitRule::Second);
-        knob.min = 0.0;
-        EffectCard::law(vec![knob])
+        let mut parameter =
+            EffectParameter::coefficient("time_constant", self.time_constant, UnitRule::Second);
+        parameter.min = 0.0;
+        EffectCard::law(vec![parameter])
             .by(Mechanism::Lag)
             .places(Places { input: true, output: true, ..Places::default() })
             .sign(SignRule::Positive)
@@ -28,7 +29,7 @@ impl Effect for Lag {
 
     /// Carried out by the system, which remembers the past.
     #[inline(always)]
-    fn law<R: Real>(&self, _: &Felt<R>, _: &mut [R]) -> R {
+    fn law<R: Real>(&self, _: &Arguments<R>, _: &mut [R]) -> R {
         R::constant(0.0)
     }
 

@@ -128,23 +128,26 @@ impl TryFrom<Fields> for Network {
 
 impl Effect for Network {
     fn card(&self) -> EffectCard {
-        let list = |name: &'static str, values: &[f64], knob: fn(String, f64) -> Knob| {
+        let list = |name: &'static str,
+                    values: &[f64],
+                    parameter: fn(String, f64) -> EffectParameter| {
             let each = values.iter().enumerate();
-            each.map(move |(i, &value)| knob(format!("{name}.{i}"), value)).collect::<Vec<_>>()
+            each.map(move |(i, &value)| parameter(format!("{name}.{i}"), value)).collect::<Vec<_>>()
         };
-        let coefficient = |name, value| Knob::coefficient(name, value, UnitRule::None);
+        let coefficient = |name, value| EffectParameter::coefficient(name, value, UnitRule::None);
         let shape = |name, value| {
-            Knob::shape(name, value, UnitRule::None).within(f64::NEG_INFINITY, f64::INFINITY)
+            EffectParameter::shape(name, value, UnitRule::None)
+                .within(f64::NEG_INFINITY, f64::INFINITY)
         };
-        let mut knobs = list("bypass", &self.bypass, coefficient);
-        knobs.push(coefficient("constant".into(), self.constant));
-        knobs.extend(list("last", &self.last, coefficient));
-        knobs.extend(list("hidden", &self.hidden, shape));
+        let mut parameters = list("bypass", &self.bypass, coefficient);
+        parameters.push(coefficient("constant".into(), self.constant));
+        parameters.extend(list("last", &self.last, coefficient));
+        parameters.extend(list("hidden", &self.hidden, shape));
         let named = |list: &[String], i: usize| list.get(i).cloned().unwrap_or_default();
         let made_for = (0..self.scales.len())
             .map(|i| (named(&self.coordinates, i), named(&self.units, i)))
             .collect();
-        EffectCard::law(knobs)
+        EffectCard::law(parameters)
             .places(Places::default())
             .shape_of(ShapeOf::Learned)
             .rank(10)
@@ -156,14 +159,14 @@ impl Effect for Network {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
         let (n, units) = (self.scales.len(), self.last.len());
         let mut scaled = [R::constant(0.0); MOST];
         // a coordinate that nobody gives stands where its scale begins
         for ((scaled, z), i) in scaled[..n].iter_mut().zip(at.coordinates).zip(0..) {
             *scaled = (*z - self.offsets[i]) / self.scales[i];
         }
-        let (bypass, rest) = at.knobs.split_at(n);
+        let (bypass, rest) = at.parameters.split_at(n);
         let (last, hidden) = rest[1..].split_at(units);
         let mut w = rest[0];
         for (&weight, &z) in bypass.iter().zip(&scaled) {

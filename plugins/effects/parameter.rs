@@ -12,9 +12,9 @@ pub struct Parameter {
 
 impl Effect for Parameter {
     fn card(&self) -> EffectCard {
-        let mut knob = Knob::coefficient("value", self.value, UnitRule::Channel);
-        knob.neutral = None;
-        EffectCard::law(vec![knob])
+        let mut parameter = EffectParameter::coefficient("value", self.value, UnitRule::Channel);
+        parameter.neutral = None;
+        EffectCard::law(vec![parameter])
             .by(Mechanism::Parameter)
             .needs(Needs::Nothing)
             .places(Places { parameter: true, ..Places::default() })
@@ -27,7 +27,7 @@ impl Effect for Parameter {
 
     /// Nothing is added: the model itself changes.
     #[inline(always)]
-    fn law<R: Real>(&self, _: &Felt<R>, _: &mut [R]) -> R {
+    fn law<R: Real>(&self, _: &Arguments<R>, _: &mut [R]) -> R {
         R::constant(0.0)
     }
 }

@@ -13,7 +13,7 @@ pub struct Linear {
 impl Effect for Linear {
     fn card(&self) -> EffectCard {
         let unit = UnitRule::ChannelPerCoordinate(1);
-        EffectCard::law(vec![Knob::coefficient("coefficient", self.coefficient, unit)])
+        EffectCard::law(vec![EffectParameter::coefficient("coefficient", self.coefficient, unit)])
             .places(Places { channel: true, ..Places::default() })
             .rank(1)
     }
@@ -27,8 +27,8 @@ impl Effect for Linear {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[c] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[c] = at.parameters();
         let z = at.z();
         c * z
     }
@@ -47,7 +47,7 @@ pub struct Quadratic {
 impl Effect for Quadratic {
     fn card(&self) -> EffectCard {
         let unit = UnitRule::ChannelPerCoordinate(2);
-        EffectCard::law(vec![Knob::coefficient("coefficient", self.coefficient, unit)])
+        EffectCard::law(vec![EffectParameter::coefficient("coefficient", self.coefficient, unit)])
             .places(Places { channel: true, input: true, output: true, ..Places::default() })
             .rank(2)
     }
@@ -57,8 +57,8 @@ impl Effect for Quadratic {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[c] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[c] = at.parameters();
         let z = at.z();
         c * z * z
     }
@@ -77,7 +77,7 @@ pub struct Cubic {
 impl Effect for Cubic {
     fn card(&self) -> EffectCard {
         let unit = UnitRule::ChannelPerCoordinate(3);
-        EffectCard::law(vec![Knob::coefficient("coefficient", self.coefficient, unit)])
+        EffectCard::law(vec![EffectParameter::coefficient("coefficient", self.coefficient, unit)])
             .places(Places { channel: true, input: true, output: true, ..Places::default() })
             .rank(2)
     }
@@ -91,8 +91,8 @@ impl Effect for Cubic {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[c] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[c] = at.parameters();
         let z = at.z();
         c * z * z * z
     }
@@ -111,7 +111,7 @@ pub struct Quintic {
 impl Effect for Quintic {
     fn card(&self) -> EffectCard {
         let unit = UnitRule::ChannelPerCoordinate(5);
-        EffectCard::law(vec![Knob::coefficient("coefficient", self.coefficient, unit)])
+        EffectCard::law(vec![EffectParameter::coefficient("coefficient", self.coefficient, unit)])
             .places(Places { channel: true, ..Places::default() })
             .rank(2)
     }
@@ -125,8 +125,8 @@ impl Effect for Quintic {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[c] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[c] = at.parameters();
         let z = at.z();
         c * z * z * z * z * z
     }

@@ -17,7 +17,7 @@ pub struct Saturation {
 impl Effect for Saturation {
     fn card(&self) -> EffectCard {
         let limit = |name, value: Option<f64>, none: f64| {
-            Knob::shape(name, value.unwrap_or(none), UnitRule::Coordinate)
+            EffectParameter::shape(name, value.unwrap_or(none), UnitRule::Coordinate)
                 .within(f64::NEG_INFINITY, f64::INFINITY)
                 .neutral_at(none)
         };
@@ -40,8 +40,8 @@ impl Effect for Saturation {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[low, high] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[low, high] = at.parameters();
         at.z().max(low).min(high) - at.z()
     }
 

@@ -15,8 +15,8 @@ pub struct Stop {
 impl Effect for Stop {
     fn card(&self) -> EffectCard {
         EffectCard::law(vec![
-            Knob::coefficient("slope", self.slope, UnitRule::ChannelPerCoordinate(1)),
-            Knob::shape("width", self.width, UnitRule::Coordinate),
+            EffectParameter::coefficient("slope", self.slope, UnitRule::ChannelPerCoordinate(1)),
+            EffectParameter::shape("width", self.width, UnitRule::Coordinate),
         ])
         .rank(4)
     }
@@ -26,8 +26,8 @@ impl Effect for Stop {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[slope, width] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[slope, width] = at.parameters();
         let z = at.z();
         slope * (z - z.max(-width).min(width))
     }

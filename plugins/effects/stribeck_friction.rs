@@ -25,10 +25,10 @@ impl Default for StribeckFriction {
 impl Effect for StribeckFriction {
     fn card(&self) -> EffectCard {
         EffectCard::law(vec![
-            Knob::coefficient("level", self.level, UnitRule::Channel),
-            Knob::coefficient("extra", self.extra, UnitRule::Channel),
-            Knob::shape("speed", self.speed, UnitRule::Coordinate),
-            Knob::shape("width", self.width, UnitRule::Coordinate),
+            EffectParameter::coefficient("level", self.level, UnitRule::Channel),
+            EffectParameter::coefficient("extra", self.extra, UnitRule::Channel),
+            EffectParameter::shape("speed", self.speed, UnitRule::Coordinate),
+            EffectParameter::shape("width", self.width, UnitRule::Coordinate),
         ])
         .needs(Needs::Velocity)
         .sign(SignRule::Opposing { polarity: 1 })
@@ -51,8 +51,8 @@ impl Effect for StribeckFriction {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[level, extra, speed, width] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[level, extra, speed, width] = at.parameters();
         let ratio = at.z() / speed;
         (level + extra * (-(ratio * ratio)).exp()) * (at.z() / width.max(R::constant(1e-30))).tanh()
     }

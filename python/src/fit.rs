@@ -32,9 +32,9 @@ struct Following<'a> {
 }
 
 impl Following<'_> {
-    fn tell(&self, of_epoch: f64) -> ControlFlow<()> {
+    fn report(&self, of_epoch: f64) -> ControlFlow<()> {
         let done = (self.at as f64 + of_epoch) / self.epochs.max(1) as f64;
-        self.watch.tell(done.min(1.0), &self.said);
+        self.watch.report(done.min(1.0), &self.said);
         if self.watch.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
@@ -44,11 +44,11 @@ impl Follow for Following<'_> {
         self.at = epoch.epoch;
         let loss = epoch.loss.map_or_else(String::new, |loss| format!(", loss {loss:.3e}"));
         self.said = format!("epoch {} of {}{loss}", epoch.epoch, self.epochs);
-        self.tell(0.0)
+        self.report(0.0)
     }
 
     fn on_step(&mut self, done: usize, of: usize) -> ControlFlow<()> {
-        self.tell(done as f64 / of.max(1) as f64)
+        self.report(done as f64 / of.max(1) as f64)
     }
 }
 
@@ -138,10 +138,10 @@ fn trained(
     arrays.insert("epoch".into(), of(&|e| e.epoch as f64));
     arrays.insert("loss".into(), of(&|e| e.loss.unwrap_or(f64::NAN)));
     arrays.insert("rate".into(), of(&|e| e.rate));
-    let shown = data.test.as_ref().or(data.validation.first());
+    let scored = data.test.as_ref().or(data.validation.first());
     let mut found = vec![];
     let (run, baseline);
-    if let Some(record) = shown {
+    if let Some(record) = scored {
         let before = Simulation::of(system, record, Init::Forgotten)?.outputs;
         baseline = before.into_iter().map(|(_, values)| values).collect::<Vec<_>>();
         run = fit.model.simulate(record)?;

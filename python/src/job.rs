@@ -58,7 +58,7 @@ impl Shared {
 }
 
 impl Watch for Shared {
-    fn tell(&self, done: f64, doing: &str) {
+    fn report(&self, done: f64, doing: &str) {
         let mut course = self.course();
         // several threads tell, and not in order: what was done stays done
         course.done = course.done.max(done.clamp(0.0, 1.0));

@@ -99,13 +99,13 @@ pub fn check(model: &Model, tables: Tables<'_>, settings: &str) -> PyResult<Job>
     let (system, level, memory) = (system_of(model), settings.level, settings.memory()?);
     let work = move |watch: &crate::job::Shared| {
         let diagnosis = Diagnosis::of(&system).max_causes(1).memory(memory);
-        let checked = diagnosis.check(&records, watch)?;
-        let document = documents::goodness_of_fit(&checked, level)?.to_string();
-        let p = checked.p_value.map(|p| number(p, None));
+        let outcome = diagnosis.check(&records, watch)?;
+        let document = documents::goodness_of_fit(&outcome, level)?.to_string();
+        let p = outcome.p_value.map(|p| number(p, None));
         let verdict = match p {
             None => "Interrupted: there is no verdict.".into(),
             Some(p) => {
-                let rejected = checked.p_value.is_some_and(|p| p < level);
+                let rejected = outcome.p_value.is_some_and(|p| p < level);
                 let word = if rejected { "reject" } else { "do not reject" };
                 format!("These data {word} the model (p = {p}, level {level}).")
             }

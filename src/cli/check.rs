@@ -22,11 +22,11 @@ pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
     let records = input::records(&args.on.data, &want, &args.on.columns, look)?;
     look.hear_interrupts()?;
     let diagnosis = Diagnosis::of(&system).max_causes(1).memory(args.memory.unwrap_or_default());
-    let checked = diagnosis.check(&records, look)?;
+    let outcome = diagnosis.check(&records, look)?;
     look.clear();
-    let rejected = checked.p_value.map(|p| p < args.level);
-    let data_rejected = checked.rejects_data();
-    let p = checked.p_value.map_or_else(String::new, |p| number(p, None));
+    let rejected = outcome.p_value.map(|p| p < args.level);
+    let data_rejected = outcome.rejects_data();
+    let p = outcome.p_value.map_or_else(String::new, |p| number(p, None));
     if data_rejected {
         look.headline("These data are at fault: what was measured is not what the machine did.");
     }
@@ -37,15 +37,15 @@ pub fn run(args: &Check, look: &Console) -> Result<u8, Failure> {
             format!("These data do not reject the model (p = {p}, level {}).", args.level)
         }
     });
-    let first = checked.first_cause.as_ref();
-    let of_the_model = first.filter(|cause| !checked.data_faults.contains(cause));
-    for cause in checked.data_faults.iter().chain(of_the_model) {
+    let first = outcome.first_cause.as_ref();
+    let of_the_model = first.filter(|cause| !outcome.data_faults.contains(cause));
+    for cause in outcome.data_faults.iter().chain(of_the_model) {
         look.result(&sentences::cause(cause));
     }
-    for note in &checked.notes {
+    for note in &outcome.notes {
         look.result(&sentences::note(note));
     }
-    let document = documents::goodness_of_fit(&checked, args.level).map_err(Failure::unwritable)?;
+    let document = documents::goodness_of_fit(&outcome, args.level).map_err(Failure::unwritable)?;
     look.document(&document);
     Ok(match rejected {
         None => NO_VERDICT,

@@ -192,7 +192,7 @@ impl Console {
 }
 
 impl Watch for Console {
-    fn tell(&self, done: f64, doing: &str) {
+    fn report(&self, done: f64, doing: &str) {
         let spent = self.started.elapsed();
         let Ok(mut course) = self.course.lock() else { return };
         // several threads tell, and not in order: what was done stays done

@@ -74,7 +74,7 @@ fn answer(folder: &Path, out: &Path, memory: Memory, look: &Console) -> Result<u
             write_text(&path, &text).map_err(|error| cannot_write(&path, &error))?;
         }
         done += 1;
-        look.tell(done as f64 / exam.cases as f64, &format!("case {number}"));
+        look.report(done as f64 / exam.cases as f64, &format!("case {number}"));
     }
     look.clear();
     let cases = exam.cases;

@@ -119,7 +119,7 @@ impl Done<'_> {
     fn write(
         &self,
         started: &str,
-        shown: Option<&Record>,
+        scored: Option<&Record>,
         is_test: bool,
         look: &Console,
     ) -> Result<u8, Failure> {
@@ -144,17 +144,17 @@ impl Done<'_> {
             report = report.reading(curve);
         }
         let (mut run, mut before) = (None, vec![]);
-        if let Some(record) = shown {
+        if let Some(record) = scored {
             before = Simulation::of(self.system, record, Init::Forgotten)?.outputs;
             run = Some(fit.model.simulate(record)?);
         }
         let baseline: Vec<Vec<f64>> = before.into_iter().map(|(_, values)| values).collect();
-        if let (Some(record), Some(run)) = (shown, &run) {
+        if let (Some(record), Some(run)) = (scored, &run) {
             report = report.showing(Compared { record, baseline: &baseline, run });
         }
         let page = out.join(PAGE);
         report.write(&page).map_err(|error| cannot_write(&page, &error))?;
-        let scores = match (shown, &run) {
+        let scores = match (scored, &run) {
             (Some(record), Some(run)) => documents::scores(record, self.want, &baseline, run),
             _ => vec![],
         };

@@ -19,9 +19,9 @@ const FILES: [&str; 3] = ["est.csv", "test.csv", "truth.json"];
 pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     let config = Document::load(&args.config)?;
     let how: Generate = config.read()?;
-    let beside = args.config.parent().unwrap_or(Path::new("")).join(&how.model);
-    outputs::check(&[&args.config, &beside], &outputs::within(&args.out, &FILES), look)?;
-    let system = load(&beside)?;
+    let model = args.config.parent().unwrap_or(Path::new("")).join(&how.model);
+    outputs::check(&[&args.config, &model], &outputs::within(&args.out, &FILES), look)?;
+    let system = load(&model)?;
     // what is hidden counts behind the effects that the model has
     let hidden = if system.effects.is_empty() { ["effects[", "hidden["] } else { [""; 2] };
     let located = |error| Failure::from(error).in_file(&args.config, &config, hidden);

@@ -7,6 +7,7 @@
 
 mod args;
 mod check;
+mod command_line;
 mod console;
 mod demo;
 mod diagnose;

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::args::Args;
 use super::console::{Console, print};
 use super::failure::Failure;
-use lacuna::effect::{Knob, Needs};
+use lacuna::effect::{EffectParameter, Needs};
 use lacuna::file::{Format, parse};
 use lacuna::model::{Signal, Signals};
 use lacuna::register::{self, Card, PlugIn};
@@ -89,7 +89,9 @@ pub fn all_effects() -> (Value, String) {
     let (mut all, mut text) = (vec![], String::new());
     for (card, effect) in register::effects() {
         let own = effect.card();
-        let unit = |knob: &Knob| knob.unit.text("channel", "coordinate");
+        let unit = |effect_parameter: &EffectParameter| {
+            effect_parameter.unit.text("channel", "coordinate")
+        };
         let needs = match own.needs {
             Needs::Nothing => "nothing",
             Needs::Coordinate => "a coordinate",
@@ -99,13 +101,13 @@ pub fn all_effects() -> (Value, String) {
             Needs::AngleOrTime => "an angle, or time",
             Needs::Time => "time",
         };
-        let knobs: Vec<Value> =
-            own.knobs.iter().map(|k| json!({ "name": k.name, "unit": unit(k) })).collect();
+        let effect_parameters: Vec<Value> =
+            own.parameters.iter().map(|k| json!({ "name": k.name, "unit": unit(k) })).collect();
         all.push(json!({
-            "name": card.name, "summary": card.summary, "parameters": knobs, "of": needs,
+            "name": card.name, "summary": card.summary, "parameters": effect_parameters, "of": needs,
         }));
         let words: Vec<String> = own
-            .knobs
+            .parameters
             .iter()
             .map(|k| match unit(k) {
                 unit if unit.is_empty() => k.name.to_string(),

@@ -44,17 +44,17 @@ pub fn check(inputs: &[&Path], outputs: &[PathBuf], look: &Console) -> Result<()
         if is_free(output) || ours(output) {
             continue;
         }
-        let shown = output.display();
+        let output_name = output.display();
         if is_table(output) {
             return Err(refused(
-                format!("{shown} exists and holds data that lacuna did not write"),
+                format!("{output_name} exists and holds data that lacuna did not write"),
                 "--out",
                 "choose another name, or move the file away: a record is never replaced".into(),
             ));
         }
         if !look.force {
             return Err(refused(
-                format!("{shown} exists, and lacuna did not write it"),
+                format!("{output_name} exists, and lacuna did not write it"),
                 "--out",
                 "choose another name or folder, or replace it with --force".into(),
             ));
@@ -215,12 +215,11 @@ fn ends_as_ours(path: &Path) -> bool {
 
 /// Whether a record is, byte by byte, the one that `truth.json` beside it speaks of.
 fn is_generated(path: &Path) -> bool {
-    let (Some(name), beside) = (path.file_name(), path.with_file_name("truth.json")) else {
+    let (Some(name), truth) = (path.file_name(), path.with_file_name("truth.json")) else {
         return false;
     };
     let stated = || {
-        let truth: Value =
-            serde_json::from_reader(BufReader::new(File::open(beside).ok()?)).ok()?;
+        let truth: Value = serde_json::from_reader(BufReader::new(File::open(truth).ok()?)).ok()?;
         truth["crc32"][name.to_string_lossy().as_ref()].as_u64()
     };
     stated().is_some_and(|stated| checksum(path).is_some_and(|sum| u64::from(sum) == stated))

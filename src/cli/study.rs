@@ -46,17 +46,17 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
         [] => study.share(i, n)?,
         keys => keys.iter().map(|key| study.job(key)).collect::<Result<_, _>>()?,
     };
-    let beside = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
-    let test: Vec<_> = study.test.iter().map(beside).collect();
+    let relative = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
+    let test: Vec<_> = study.test.iter().map(relative).collect();
     let [data, validate] =
-        [&study.data, &study.validate].map(|names| names.iter().map(beside).collect::<Vec<_>>());
+        [&study.data, &study.validate].map(|names| names.iter().map(relative).collect::<Vec<_>>());
     outputs::distinct(&data, &[("test", &test)])?;
     let mut inputs = outputs::paths(&[&data, &validate, &test]);
-    let model = beside(&study.model);
+    let model = relative(&study.model);
     inputs.push(&model);
     outputs::check(&inputs, &outputs::within(&args.out, &FILES), look)?;
     let (system, want) = input::model(&model)?;
-    let read = |name: &String| input::record(&beside(name), &want, &Columns::default(), look);
+    let read = |name: &String| input::record(&relative(name), &want, &Columns::default(), look);
     let all = |names: &[String]| names.iter().map(read).collect::<Result<Vec<Record>, _>>();
     let inputs = Inputs {
         training: all(&study.data)?,

@@ -47,6 +47,7 @@ impl fmt::Display for Kind {
 ///
 /// Its `Display` text is one phrase (press.csv, line 12, column 3, `force`), or nothing
 /// where the place is empty.
+#[doc(hidden)]
 #[derive(Debug, Clone, Default, PartialEq, Eq, Hash, Serialize)]
 pub struct Place {
     /// The file, as the user wrote its path.

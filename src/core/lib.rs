@@ -4,6 +4,8 @@
 // plug-ins and examples say `lacuna::`, wherever they are compiled
 extern crate self as lacuna;
 
+use lacuna_fourier as fourier;
+
 pub mod data;
 #[doc(hidden)]
 pub mod digits;
@@ -33,8 +35,8 @@ pub mod __private {
 pub mod prelude {
     #[doc(no_inline)]
     pub use crate::effect::{
-        CandidateEffect, Effect, EffectCard, Felt, Knob, Mechanism, Named, Needs, Places, Role,
-        Search, ShapeOf, SignRule, Size, UnitRule, View,
+        Arguments, CandidateEffect, Effect, EffectCard, EffectParameter, Mechanism, Named, Needs,
+        Places, Role, Search, ShapeOf, SignRule, Size, UnitRule, View,
     };
     #[doc(no_inline)]
     pub use crate::model::{At, Fault, Physics, Signals, StateSpaceModel};

@@ -1,17 +1,17 @@
-//! Where long work tells how far it is, and asks whether to go on.
+//! Progress monitor of long work: hears how far it is, and may cancel it.
 
-/// Somebody who watches long work.
+/// A progress monitor.
 pub trait Watch: Sync {
-    /// `done` goes from 0 to 1; `doing` says what is being done.
-    fn tell(&self, done: f64, doing: &str);
+    /// Reports progress: `done` goes from 0 to 1; `doing` says what is being done.
+    fn report(&self, done: f64, doing: &str);
 
-    /// Whether somebody asked to stop with what is known.
+    /// Whether the work is cancelled: it then ends with what is known.
     fn stopped(&self) -> bool;
 }
 
-/// Watches nothing.
+/// Monitors nothing and never cancels.
 impl Watch for () {
-    fn tell(&self, _: f64, _: &str) {}
+    fn report(&self, _: f64, _: &str) {}
 
     fn stopped(&self) -> bool {
         false

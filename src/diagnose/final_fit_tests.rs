@@ -25,10 +25,10 @@ fn pushed(system: &System) -> (Prepared<'_>, [Added; 2]) {
     let prepared = Prepared::new(system, &[record], 0.7).unwrap();
     let allowed = Allowed::default();
     let all = library(&prepared.problem, &prepared.nominal, &prepared.start, vec![], &allowed);
-    let added = |effect: &str, knobs: Vec<f64>| {
+    let added = |effect: &str, parameters: Vec<f64>| {
         let mut into_push = all.iter().filter(|c| c.into == "push");
         let cause = into_push.find(|c| c.effect == effect).unwrap().clone();
-        Added { cause, knobs }
+        Added { cause, parameters }
     };
     let both = [added("bias", vec![0.1]), added("cubic", vec![1e9])];
     (prepared, both)

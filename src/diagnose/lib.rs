@@ -5,6 +5,7 @@ use lacuna_core::{
     system, watch,
 };
 use lacuna_estimate as estimate;
+use lacuna_fourier as fourier;
 use lacuna_likelihood as likelihood;
 use lacuna_plugins as plugins;
 

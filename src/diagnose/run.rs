@@ -64,8 +64,8 @@ impl Diagnosis<'_> {
             return self.run_on(records, test, watch);
         };
         let mut finding = self.run_on(&thin.records, thin.test.as_ref(), watch)?;
-        let alone = finding.single_records.iter_mut().map(|alone| &mut alone.cause);
-        finding.causes.iter_mut().chain(alone).for_each(|cause| thin.place(cause));
+        let single = finding.single_records.iter_mut().map(|single| &mut single.cause);
+        finding.causes.iter_mut().chain(single).for_each(|cause| thin.place(cause));
         finding.notes.insert(0, thin.note);
         Ok(finding)
     }
@@ -107,7 +107,7 @@ impl Diagnosis<'_> {
             interrupted: watch.stopped(),
             seconds: started.elapsed().as_secs_f64(),
         };
-        watch.tell(1.0, "done");
+        watch.report(1.0, "done");
         Ok(searched.finding(around))
     }
 
@@ -188,12 +188,12 @@ impl Diagnosis<'_> {
                 let mut part = Prepared::new(self.system, windows, share)?.within(self.memory);
                 let (chosen, other) = innovations::search(&mut part, &self.allowed, most, watch)?;
                 looked_at = Some(part);
-                watch.tell(0.95, "fitting to all samples");
+                watch.report(0.95, "fitting to all samples");
                 let chosen = innovations::finish(&mut whole, &self.allowed, chosen)?;
                 (chosen, other.map(|other| whole.finish(&self.allowed, other)).transpose()?)
             }
         };
-        watch.tell(0.97, "measuring the gain");
+        watch.report(0.97, "measuring the gain");
         let firsts = firsts(records);
         let (start, fixed) = (&whole.start, &self.allowed.fixed);
         let from = Source { start, test: &test, used, firsts: &firsts, fixed };

@@ -79,7 +79,7 @@ impl Diagnosis<'_> {
         let mut prepared =
             Prepared::in_stretches(self.system, &stretches, FIT)?.within(self.memory);
         let chosen = prepared.search(&self.allowed, self.max_causes, watch)?;
-        watch.tell(0.97, "measuring the gain");
+        watch.report(0.97, "measuring the gain");
         let test = TestData { records: tested, counted: Counted::All };
         let begin: Vec<usize> = begin.iter().map(|&(r, from)| firsts[r] + from).collect();
         let (start, fixed) = (&prepared.start, &self.allowed.fixed);

@@ -44,7 +44,7 @@ impl Diagnosis<'_> {
         let scales = scales(records, &bare);
         let left = |record: &Record, run: &Option<Outputs>| squares(record, run.as_ref(), &scales);
         let of_bare: Vec<f64> = records.iter().zip(&bare).map(|(r, run)| left(r, run)).collect();
-        let together = match named {
+        let joint = match named {
             true => {
                 records.iter().zip(runs(&searched.extended)).map(|(r, run)| left(r, &run)).sum()
             }
@@ -61,7 +61,7 @@ impl Diagnosis<'_> {
             let (Some(first), Verdict::CausesFound) = (first, own.verdict) else { continue };
             let with = runs(&own.extended);
             let others: f64 = of_bare.iter().sum::<f64>() - of_bare[i];
-            if !(left(record, &with[i]) + others < together) {
+            if !(left(record, &with[i]) + others < joint) {
                 continue;
             }
             let said: Option<Vec<InRecord>> = (0..records.len())

@@ -19,7 +19,7 @@ use crate::watch::Watch;
 /// One estimated parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Estimated {
-    /// Name; knobs of effects are `effects[i].name`.
+    /// Name; parameters of effects are `effects[i].name`.
     pub name: String,
     /// Value before.
     pub from: f64,
@@ -58,17 +58,17 @@ pub struct Estimate {
 /// Stretches of records at most, where a system does not forget where it starts.
 const STRETCHES: usize = 120;
 
-/// What moves: a parameter, a knob of an effect, or an initial state.
+/// What moves: a parameter, a parameter of an effect, or an initial state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Key {
     Theta(usize),
-    /// Position in the flat list of knobs.
-    Knob(usize),
+    /// Position in the flat list of the parameters of effects.
+    EffectParameter(usize),
     /// Record, segment, state.
     Start(usize, usize, usize),
 }
 
-/// Fits the free parameters of a system (and the knobs of its effects) to records, with the
+/// Fits the free parameters of a system (and those of its effects) to records, with the
 /// initial states estimated beside them; `seed` draws the further starts.
 ///
 /// # Errors
@@ -121,11 +121,11 @@ fn from_best_start(
     descend: impl FnOnce(&Fit<'_>, Vec<f64>) -> Result<Levenberg, EvaluateError>,
 ) -> Result<Estimate, EvaluateError> {
     let fit = Fit::new(system, records, held, watch)?;
-    watch.tell(0.0, "trying starts");
+    watch.report(0.0, "trying starts");
     let (best, before) = fit.best_start(seed)?;
-    watch.tell(0.3, "fitting");
+    watch.report(0.3, "fitting");
     let done = descend(&fit, best)?;
-    watch.tell(1.0, "done");
+    watch.report(1.0, "done");
     fit.outcome(&done, before)
 }
 
@@ -183,15 +183,23 @@ impl<'a> Fit<'a> {
                 slot.way,
                 crate::system::Way::InputPath(_) | crate::system::Way::OutputPath(_)
             );
-            for (i, knob) in slot.card.knobs.iter().enumerate() {
-                let fixed = slot.card.own_path.iter().any(|(n, _)| own_path && *n == knob.name);
-                if knob.role == Role::Choice || !knob.value.is_finite() || fixed {
+            for (i, effect_parameter) in slot.card.parameters.iter().enumerate() {
+                let fixed =
+                    slot.card.own_path.iter().any(|(n, _)| own_path && *n == effect_parameter.name);
+                if effect_parameter.role == Role::Choice
+                    || !effect_parameter.value.is_finite()
+                    || fixed
+                {
                     continue;
                 }
-                let size = if knob.value == 0.0 { 1.0 } else { knob.value.abs() };
-                keys.push(Key::Knob(slot.knobs + i));
-                unknowns.push(Unknown::new(knob.value, 0.1 * size).within(knob.min, knob.max));
-                names.push((format!("effects[{index}].{}", knob.name), String::new()));
+                let size =
+                    if effect_parameter.value == 0.0 { 1.0 } else { effect_parameter.value.abs() };
+                keys.push(Key::EffectParameter(slot.first_parameter + i));
+                unknowns.push(
+                    Unknown::new(effect_parameter.value, 0.1 * size)
+                        .within(effect_parameter.min, effect_parameter.max),
+                );
+                names.push((format!("effects[{index}].{}", effect_parameter.name), String::new()));
             }
         }
         if keys.is_empty() {

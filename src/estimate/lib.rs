@@ -11,13 +11,13 @@ pub mod law;
 mod linear;
 mod rank;
 
-pub use fit::{Estimate, Estimated, estimate};
+pub use fit::{Estimate, estimate};
 pub use linear::{LinearError, LinearEstimate, linear};
 
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
 pub use self::{
-    fit::{estimate_by, estimate_with},
+    fit::{Estimated, estimate_by, estimate_with},
     linear::Mode,
     linear::{LinearParameter, linear_baseline, linear_with},
     rank::{Combination, unseen},

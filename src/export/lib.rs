@@ -42,6 +42,7 @@ pub enum Target {
 
 /// What was written.
 #[derive(Debug, Clone, PartialEq, Eq)]
+#[doc(hidden)]
 pub struct Written {
     /// The files.
     pub files: Vec<PathBuf>,

@@ -26,7 +26,7 @@ impl Vector {
         let plan = system.plan(step.sampling_time)?;
         let lane = Lane {
             theta: plan.signals.theta(),
-            knobs: plan.knob_values(),
+            effect_values: plan.effect_values(),
             starts: vec![plan.signals.initial()],
             ..Lane::default()
         };

@@ -102,8 +102,8 @@ impl Predictor {
         let pass = Pass::of(&run.path, noise, false);
         let (path, layout) = (&run.path, &pass.layout);
         let (n, ny, na) = (path.n, path.outputs, layout.len());
-        let knobs = plan.knob_values();
-        let given = (&self.model.theta[..], &knobs[..]);
+        let effect_values = plan.effect_values();
+        let given = (&self.model.theta[..], &effect_values[..]);
         let Some(mut plant) = Transition::new(&self.system, plan, &self.drive, given, false) else {
             return Err(diverges);
         };

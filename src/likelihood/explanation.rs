@@ -15,7 +15,7 @@ pub struct NamedCause {
     pub of: Option<String>,
     /// Laws of the place, an offset of its channel among them; empty for a parameter.
     pub laws: Vec<Placed>,
-    /// Covariance of the knobs of each law; 0 where they were not fitted.
+    /// Covariance of the parameters of each law; 0 where they were not fitted.
     pub covariances: Vec<DMatrix<f64>>,
     /// Value of the parameter, and its standard error.
     pub parameter: Option<(f64, Option<f64>)>,
@@ -30,10 +30,10 @@ pub struct NamedCause {
 }
 
 impl NamedCause {
-    /// Standard error of a knob of one of its laws; `None` where it was not fitted.
+    /// Standard error of a parameter of one of its laws; `None` where it was not fitted.
     #[must_use]
-    pub fn std_error(&self, law: usize, knob: usize) -> Option<f64> {
-        let variance = self.covariances.get(law)?.get((knob, knob))?;
+    pub fn std_error(&self, law: usize, parameter: usize) -> Option<f64> {
+        let variance = self.covariances.get(law)?.get((parameter, parameter))?;
         (*variance > 0.0).then(|| variance.sqrt())
     }
 }

@@ -63,8 +63,8 @@ pub(crate) fn follow(
     noise: &Noise,
     wanted: Wanted,
 ) -> Option<Followed> {
-    let knobs = model.plan.knob_values();
-    let given = (&model.theta[..], &knobs[..]);
+    let effect_values = model.plan.effect_values();
+    let given = (&model.theta[..], &effect_values[..]);
     let mut plant = Transition::new(system, &model.plan, drive, given, wanted.theta)?;
     let (n, nf, ny) = (plant.states(), plant.forces(), noise.measurement.len());
     let layout = Layout::of(n, noise);

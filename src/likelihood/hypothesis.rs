@@ -215,7 +215,7 @@ impl Predictor {
         columns
     }
 
-    /// The hypothesis after a step, within the knobs' bounds.
+    /// The hypothesis after a step, within the bounds of the parameters.
     fn stepped(&self, of: &Hypothesis, step: &[f64]) -> Hypothesis {
         let mut next = of.clone();
         let mut at = 0;
@@ -229,10 +229,10 @@ impl Predictor {
                 }
                 Part::Law { law, .. } => {
                     for i in law.free.clone() {
-                        let (knob, value) = (&law.card.knobs[i], law.values[i]);
-                        let moved = match knob.role {
+                        let (effect_parameter, value) = (&law.card.parameters[i], law.values[i]);
+                        let moved = match effect_parameter.role {
                             Role::Coefficient => value + step[at],
-                            _ if knob.min >= 0.0 && value > 0.0 => {
+                            _ if effect_parameter.min >= 0.0 && value > 0.0 => {
                                 value * (step[at] / value).clamp(-STEP, STEP).exp()
                             }
                             _ => {
@@ -240,7 +240,7 @@ impl Predictor {
                                 value + step[at].clamp(-most, most)
                             }
                         };
-                        law.values[i] = moved.clamp(knob.min, knob.max);
+                        law.values[i] = moved.clamp(effect_parameter.min, effect_parameter.max);
                         at += 1;
                     }
                 }

@@ -16,9 +16,9 @@ pub(crate) struct Law {
     pub name: &'static str,
     pub effect: Box<dyn CandidateEffect>,
     pub card: EffectCard,
-    /// Values of the knobs.
+    /// Values of the parameters.
     pub values: Vec<f64>,
-    /// Knobs that may be fitted.
+    /// Parameters that may be fitted.
     pub free: Vec<usize>,
 }
 
@@ -48,7 +48,7 @@ pub(crate) fn laws(spot: Spot, view: &View) -> Vec<Law> {
             Spot::OwnPath { input: false } => card.places.output,
         };
         let plain = card.mechanism == Mechanism::Law && card.states == 0 && card.made_for.is_none();
-        if fits && allowed && plain && !card.knobs.is_empty() {
+        if fits && allowed && plain && !card.parameters.is_empty() {
             found.extend(points(own.name, effect.as_ref(), &card, spot, view));
         }
     }
@@ -69,7 +69,7 @@ pub(crate) fn offsets() -> Vec<Law> {
     all.collect()
 }
 
-/// The points of one law's grid; a knob that picks a variant takes each of its ends.
+/// The points of one law's grid; a parameter that picks a variant takes each of its ends.
 fn points(
     name: &'static str,
     effect: &dyn CandidateEffect,
@@ -80,22 +80,25 @@ fn points(
     let search = effect.search(view);
     let own_path = matches!(spot, Spot::OwnPath { .. });
     let fixed = |i: usize| {
-        let name = &card.knobs[i].name;
-        card.own_path.iter().find(|(knob, _)| own_path && knob == name).map(|(_, value)| *value)
+        let name = &card.parameters[i].name;
+        card.own_path
+            .iter()
+            .find(|(parameter, _)| own_path && parameter == name)
+            .map(|(_, value)| *value)
     };
     let choices: Vec<usize> =
-        (0..card.knobs.len()).filter(|&i| card.knobs[i].role == Role::Choice).collect();
+        (0..card.parameters.len()).filter(|&i| card.parameters[i].role == Role::Choice).collect();
     let mut found = vec![];
     for start in &search.starts {
         for variant in 0..1_usize << choices.len().min(3) {
             let mut values = start.clone();
             for (bit, &i) in choices.iter().enumerate() {
-                let knob = &card.knobs[i];
-                values[i] = if variant >> bit & 1 == 0 { knob.max } else { knob.min };
+                let parameter = &card.parameters[i];
+                values[i] = if variant >> bit & 1 == 0 { parameter.max } else { parameter.min };
             }
             (0..values.len()).for_each(|i| values[i] = fixed(i).unwrap_or(values[i]));
             let free = (0..values.len())
-                .filter(|&i| fixed(i).is_none() && card.knobs[i].role != Role::Choice)
+                .filter(|&i| fixed(i).is_none() && card.parameters[i].role != Role::Choice)
                 .filter(|&i| values[i].is_finite())
                 .collect();
             let effect = effect.boxed();
@@ -116,10 +119,10 @@ impl Law {
             _ => 0.0,
         };
         let first = self.coefficients().first().copied();
-        if let Some(knob) = first.map(|i| &mut self.card.knobs[i]) {
+        if let Some(parameter) = first.map(|i| &mut self.card.parameters[i]) {
             match sign {
-                s if s > 0.0 => knob.min = knob.min.max(0.0),
-                s if s < 0.0 => knob.max = knob.max.min(0.0),
+                s if s > 0.0 => parameter.min = parameter.min.max(0.0),
+                s if s < 0.0 => parameter.max = parameter.max.min(0.0),
                 _ => {}
             }
         }
@@ -128,7 +131,7 @@ impl Law {
 
     /// Coefficients that may be fitted.
     pub fn coefficients(&self) -> Vec<usize> {
-        let linear = |&&i: &&usize| self.card.knobs[i].role == Role::Coefficient;
+        let linear = |&&i: &&usize| self.card.parameters[i].role == Role::Coefficient;
         self.free.iter().filter(linear).copied().collect()
     }
 
@@ -152,7 +155,7 @@ impl Law {
     pub fn course(&self, values: &[f64], z: &[f64]) -> Vec<f64> {
         let lanes = 8;
         let packs = z.len().div_ceil(lanes);
-        let knobs: Vec<F64x8> =
+        let parameters: Vec<F64x8> =
             (0..packs).flat_map(|_| values.iter().map(|&value| F64x8::constant(value))).collect();
         let coordinates: Vec<F64x8> = (0..packs)
             .map(|pack| {
@@ -166,7 +169,7 @@ impl Law {
         let rate = vec![F64x8::constant(0.0); packs];
         let block = EffectBlock {
             packs,
-            knobs: &knobs,
+            parameters: &parameters,
             coordinates: &coordinates,
             rate: &rate,
             has_rate: false,
@@ -178,17 +181,20 @@ impl Law {
         (0..z.len()).map(|k| finite(w[k / lanes].0[k % lanes])).collect()
     }
 
-    /// Slopes of w along every free knob, by central differences: knobs are few, and an effect's law
+    /// Slopes of w along every free parameter, by central differences: parameters are few, and an effect's law
     /// is a formula.
     pub fn slopes(&self, z: &[f64]) -> Vec<Vec<f64>> {
         let coefficients = self.coefficients();
         self.free
             .iter()
             .map(|&i| {
-                let knob = self.values[i];
+                let parameter = self.values[i];
                 let linear = coefficients.contains(&i);
-                let h =
-                    if linear { 1e-4 * knob.abs().max(1e-4) } else { 1e-4 * knob.abs().max(1e-9) };
+                let h = if linear {
+                    1e-4 * parameter.abs().max(1e-4)
+                } else {
+                    1e-4 * parameter.abs().max(1e-9)
+                };
                 let at = |sign: f64| {
                     let mut values = self.values.clone();
                     values[i] += sign * h;

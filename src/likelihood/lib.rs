@@ -53,7 +53,7 @@ pub use error::LikelihoodError;
 pub use missing::MissingForce;
 pub use noise::Noise;
 pub use places::places;
-pub use predictor::{Innovations, Predictor};
+pub use predictor::Predictor;
 pub use ranked::RankedPlaces;
 
 // machinery that sibling crates and the program share; it may change at any time
@@ -64,6 +64,7 @@ pub use self::{
     missing::Explained,
     model::{Fitted, NoiseModel},
     noise::{Component, Slow},
+    predictor::Innovations,
     ranked::{FittedLaws, RankedPlace},
     scope::Scope,
 };

@@ -85,11 +85,11 @@ impl Predictor {
     pub fn missing(&self) -> Result<Vec<MissingForce>, LikelihoodError> {
         let path = self.tracking(&self.model)?;
         let start = self.white(self.spread.iter().map(|s| s * s + f64::MIN_POSITIVE).collect());
-        let alone = most_likely(&path, &start, &start.components()).1;
+        let without = most_likely(&path, &start, &start.components()).1;
         let channels = self.distinct(&path);
         let mut found = channels
             .par_iter()
-            .map(|&c| self.force(&path, c, alone))
+            .map(|&c| self.force(&path, c, without))
             .collect::<Result<Vec<_>, _>>()?;
         let values: Vec<(String, f64)> =
             found.iter().map(|f| (f.channel.clone(), f.gain)).collect();
@@ -103,7 +103,7 @@ impl Predictor {
         Ok(found)
     }
 
-    fn force(&self, path: &Path, c: usize, alone: f64) -> Result<MissingForce, LikelihoodError> {
+    fn force(&self, path: &Path, c: usize, without: f64) -> Result<MissingForce, LikelihoodError> {
         let mut noise = self.walking(path, c);
         let mut run = self.run(&self.model, &noise, Wanted::default())?;
         if run.log_likelihood.is_finite() {
@@ -129,7 +129,7 @@ impl Predictor {
         let (channel, unit) = self.forces().swap_remove(c);
         let rms = (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
         let explained_by = self.explained(&states, &values)?;
-        let gain = run.log_likelihood - alone;
+        let gain = run.log_likelihood - without;
         let alike = vec![];
         Ok(MissingForce { channel, unit, rms, gain, values, band, explained_by, alike })
     }
@@ -179,8 +179,8 @@ impl Predictor {
     /// The table of sources along given states.
     pub(crate) fn seen(&self, states: &[f64]) -> Result<Vec<f64>, LikelihoodError> {
         let (plan, theta) = (&self.model.plan, &self.model.theta);
-        let knobs = plan.knob_values();
-        let given = (&theta[..], &knobs[..]);
+        let effect_values = plan.effect_values();
+        let given = (&theta[..], &effect_values[..]);
         let plant = Transition::new(&self.system, plan, &self.drive, given, false);
         let mut plant = plant.ok_or(LikelihoodError::Diverges { sample: 0, time: 0.0 })?;
         let (n, ny, entries) = (plant.states(), plan.sizes.y, plan.sources.entries.len());

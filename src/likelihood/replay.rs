@@ -151,7 +151,7 @@ impl Pass {
 
     /// Backwards through the outputs of one sample; tells each its score along the variance of its
     /// measurement noise.
-    fn outputs(&self, path: &Path, k: usize, back: &mut Back, mut tell: impl FnMut(usize, f64)) {
+    fn outputs(&self, path: &Path, k: usize, back: &mut Back, mut score: impl FnMut(usize, f64)) {
         let (na, ny) = (self.layout.len(), path.outputs);
         for o in (0..ny).rev() {
             let at = k * ny + o;
@@ -160,7 +160,7 @@ impl Pass {
             }
             self.layout.row(path.c(k, o), o, &mut back.c);
             let (u, d) = back.update(&self.k[at * na..][..na], self.z[at], self.s[at]);
-            tell(o, 0.5 * (u * u - d));
+            score(o, 0.5 * (u * u - d));
         }
     }
 

@@ -96,7 +96,8 @@ pub(crate) fn sets(
                     let coefficients = law.coefficients();
                     for (&i, _) in coefficients.iter().zip(columns) {
                         let value = amplitudes.as_ref().map_or(0.0, |a| a[next]);
-                        law.values[i] = value.clamp(law.card.knobs[i].min, law.card.knobs[i].max);
+                        law.values[i] =
+                            value.clamp(law.card.parameters[i].min, law.card.parameters[i].max);
                         next += 1;
                     }
                     if coefficients.is_empty() {

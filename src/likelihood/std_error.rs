@@ -12,7 +12,7 @@ use super::replay::Pass;
 use super::tangent::gram;
 
 impl Predictor {
-    /// Covariance of every part's knobs; of knobs that were not fitted it is 0.
+    /// Covariance of every part's parameters; of parameters that were not fitted it is 0.
     pub(crate) fn covariances(&self, of: &Hypothesis, run: &Followed) -> Vec<DMatrix<f64>> {
         let columns = self.slopes(of, run);
         let pass = Pass::of(&run.path, &of.noise, false);

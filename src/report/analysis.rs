@@ -1,6 +1,6 @@
 //! What the pictures of a residual need: its spectrum, and how it follows the input.
 
-use realfft::RealFftPlanner;
+use crate::fourier;
 
 /// One-sided power spectral density by Welch's method (Hann window, half overlap): frequency
 /// in Hz and density in unit^2/Hz (Welch, 1967).
@@ -14,7 +14,7 @@ pub fn density(x: &[f64], dt: f64) -> Vec<(f64, f64)> {
     let turn = std::f64::consts::TAU / size as f64;
     let window: Vec<f64> = (0..size).map(|k| 0.5 - 0.5 * (turn * k as f64).cos()).collect();
     let energy: f64 = window.iter().map(|w| w * w).sum();
-    let forward = RealFftPlanner::<f64>::new().plan_fft_forward(size);
+    let forward = fourier::forward(size);
     let mut sum = vec![0.0; size / 2 + 1];
     let mut pieces = 0.0;
     for piece in (0..=x.len() - size).step_by(size / 2).map(|k| &x[k..k + size]) {

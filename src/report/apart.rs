@@ -25,7 +25,7 @@ fn experiments(outlook: &Outlook, pair: [&Supposed; 2]) -> String {
         }
         return "not alike where each moves the outputs as much as the noise: more of the same data".into();
     };
-    let described = outlook.experiments.iter().filter(|e| alike.told_apart_by.contains(&e.name));
+    let described = outlook.experiments.iter().filter(|e| alike.distinguished_by.contains(&e.name));
     let described: Vec<String> =
         described.take(3).map(|e| format!("{} ({})", e.name, e.description)).collect();
     match described.is_empty() {
@@ -98,11 +98,11 @@ mod tests {
     }
 
     #[test]
-    fn twins_are_told_apart_by_nothing_and_that_is_said() {
+    fn twins_are_distinguished_by_nothing_and_that_is_stated() {
         let v = "v".to_string();
         let [a, b] = ["force", "u"].map(|into| named("linear", into, Some(&v)));
         let [lag, delay] = ["lag", "delay"].map(|effect| named(effect, "u", None));
-        let (track, told_apart_by) = (Track::ParametersTrusted, vec![]);
+        let (track, distinguished_by) = (Track::ParametersTrusted, vec![]);
         let causes = [lag.clone(), delay.clone()];
         let mut outlook = Outlook {
             schema: 1,
@@ -114,7 +114,7 @@ mod tests {
                 track,
                 rho: 1.0,
                 separation: 0.0,
-                told_apart_by,
+                distinguished_by,
                 twins: true,
             }],
             experiments: vec![],

@@ -67,10 +67,10 @@ pub fn section(page: &mut Page, finding: &Finding, index: usize) {
         weights(page, records);
     }
     if let Some(rows) = cause.rows.as_ref().filter(|rows| !rows.is_empty()) {
-        let shown: Vec<String> = rows.iter().take(60).map(ToString::to_string).collect();
+        let listed: Vec<String> = rows.iter().take(60).map(ToString::to_string).collect();
         let more =
             if rows.len() > 60 { format!(" and {} more", rows.len() - 60) } else { String::new() };
-        page.element("p", "", &format!("Rows: {}{more}.", shown.join(", ")));
+        page.element("p", "", &format!("Rows: {}{more}.", listed.join(", ")));
     }
     rivals(page, cause);
 }
@@ -105,12 +105,12 @@ fn rivals(page: &mut Page, cause: &Cause) {
     }
     page.table(&header, &rows);
     if let Some(place) = cause.place_probability {
-        let said = format!(
+        let sentence = format!(
             "Probability of this place, whatever the law: {:.1} %. How often such probabilities were right \
              where the answer was known: docs/results/calibration.json of the project.",
             100.0 * place
         );
-        page.element("p", "note", &said);
+        page.element("p", "note", &sentence);
     }
 }
 
@@ -120,10 +120,10 @@ pub fn single_records(page: &mut Page, finding: &Finding) {
         return;
     }
     page.heading("Single records");
-    for alone in &finding.single_records {
-        let said = format!("{} on its own: {}", alone.record, sentences::cause(&alone.cause));
-        page.element("p", "", &said);
-        weights(page, alone.cause.records.as_deref().unwrap_or_default());
+    for single in &finding.single_records {
+        let sentence = format!("{} on its own: {}", single.record, sentences::cause(&single.cause));
+        page.element("p", "", &sentence);
+        weights(page, single.cause.records.as_deref().unwrap_or_default());
     }
 }
 

@@ -3,6 +3,7 @@
 use lacuna_core::{data, digits, effect, evaluate, file, look, model, register, system};
 use lacuna_diagnose as diagnose;
 use lacuna_estimate as estimate;
+use lacuna_fourier as fourier;
 use lacuna_learn::train;
 use lacuna_likelihood as likelihood;
 

@@ -138,19 +138,23 @@ impl ReadBack {
 /// A law in words: effects with their numbers.
 fn named(law: &Candidate) -> String {
     let parts = law.parts.iter().map(|part| {
-        let knobs = part.law.card().knobs.into_iter().filter(|knob| knob.value.is_finite());
-        let knobs: Vec<String> =
-            knobs.map(|knob| format!("{} {}", knob.name, number(knob.value, None))).collect();
-        format!("{} ({})", part.effect, knobs.join(", "))
+        let parameters =
+            part.law.card().parameters.into_iter().filter(|parameter| parameter.value.is_finite());
+        let parameters: Vec<String> = parameters
+            .map(|parameter| format!("{} {}", parameter.name, number(parameter.value, None)))
+            .collect();
+        format!("{} ({})", part.effect, parameters.join(", "))
     });
     parts.collect::<Vec<_>>().join(" + ")
 }
 
 fn law(law: &Candidate) -> Value {
     let part = |part: &Part| {
-        let knobs = part.law.card().knobs.into_iter().filter(|knob| knob.value.is_finite());
-        let parameters: serde_json::Map<String, Value> =
-            knobs.map(|knob| (knob.name.to_string(), json!(knob.value))).collect();
+        let parameters =
+            part.law.card().parameters.into_iter().filter(|parameter| parameter.value.is_finite());
+        let parameters: serde_json::Map<String, Value> = parameters
+            .map(|parameter| (parameter.name.to_string(), json!(parameter.value)))
+            .collect();
         json!({ "effect": part.effect, "parameters": parameters })
     };
     let parts: Vec<Value> = law.parts.iter().map(part).collect();

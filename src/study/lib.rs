@@ -24,19 +24,19 @@ mod run;
 mod share;
 
 pub use error::StudyError;
-pub use exam::{Exam, ExamResult};
+pub use exam::Exam;
 pub use generate::Generate;
 pub use monte_carlo::MonteCarlo;
 pub use noise_study::NoiseStudy;
 pub use rehearse::Rehearsal;
-pub use result::StudyResult;
 
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
 pub use self::{
     exam::{
         Answer, Answered, Answers, Calibration, Case, CaseFile, CaseTruth, Concealed, Conditions,
-        Hidden, Hit, Kind, Machine, Marks, Named, Noise, Number, Outside, Tally, Written,
+        ExamResult, Hidden, Hit, Kind, Machine, Marks, Named, Noise, Number, Outside, Tally,
+        Written,
     },
     figures::StudyReport,
     generate::Generated,
@@ -45,7 +45,7 @@ pub use self::{
     monte_carlo::{Inputs, Start},
     noise_study::Level,
     rehearse::Rehearsed,
-    result::{Quartiles, Summary},
+    result::{Quartiles, StudyResult, Summary},
     share::Share,
 };
 

@@ -55,7 +55,7 @@ impl NoiseStudy {
         let count = study.starts.len() * self.snr_db.len();
         for (number, start) in study.starts.iter().enumerate() {
             for &snr_db in &self.snr_db {
-                watch.tell(levels.len() as f64 / count as f64, "encoders under noise");
+                watch.report(levels.len() as f64 / count as f64, "encoders under noise");
                 let mut errors = vec![];
                 for draw in 0..self.draws {
                     let mut noisy = Record::new(record.sampling_time);

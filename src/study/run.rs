@@ -35,7 +35,7 @@ impl MonteCarlo {
         folder: &Path,
         watch: &dyn Watch,
     ) -> Result<usize, StudyError> {
-        let (root, shown) = (folder, Mutex::new(Instant::now()));
+        let (root, last_line) = (folder, Mutex::new(Instant::now()));
         let folder = folder.join("runs");
         std::fs::create_dir_all(&folder).map_err(|error| StudyError::write(&folder, error))?;
         let signals = inputs.system.signals();
@@ -79,7 +79,7 @@ impl MonteCarlo {
                     Ok(Some(_)) => {
                         progress[number].store(PARTS, Ordering::Relaxed);
                         finished.fetch_add(1, Ordering::Relaxed);
-                        show(root, &shown);
+                        show(root, &last_line);
                     }
                     Ok(None) => return,
                     Err(error) => {
@@ -108,9 +108,9 @@ impl MonteCarlo {
 }
 
 /// Writes the page of what is done so far, not more often than [`REWRITTEN`].
-fn show(folder: &Path, shown: &Mutex<Instant>) {
+fn show(folder: &Path, last_line: &Mutex<Instant>) {
     // who finds another one at it leaves it to that one
-    let Ok(mut last) = shown.try_lock() else { return };
+    let Ok(mut last) = last_line.try_lock() else { return };
     if last.elapsed() < REWRITTEN {
         return;
     }
@@ -135,7 +135,7 @@ struct Progress<'a> {
 }
 
 impl Progress<'_> {
-    fn tell(&self, of_epoch: f64) -> ControlFlow<()> {
+    fn report(&self, of_epoch: f64) -> ControlFlow<()> {
         let epochs = self.of.recipe.training.epochs.max(1);
         let own = (self.at as f64 + of_epoch) / epochs as f64;
         self.progress[self.number].store((PARTS as f64 * own) as usize, Ordering::Relaxed);
@@ -143,7 +143,7 @@ impl Progress<'_> {
         let all = (self.before + self.progress.len()) * PARTS;
         let share = (self.before * PARTS + parts) as f64 / all.max(1) as f64;
         let start = &self.of.starts[self.job.start].name;
-        self.watch.tell(share, &format!("{start}, seed {}, epoch {}", self.job.seed, self.at));
+        self.watch.report(share, &format!("{start}, seed {}, epoch {}", self.job.seed, self.at));
         if self.watch.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
@@ -151,10 +151,10 @@ impl Progress<'_> {
 impl Follow for Progress<'_> {
     fn on_epoch(&mut self, epoch: &Epoch) -> ControlFlow<()> {
         self.at = epoch.epoch;
-        self.tell(0.0)
+        self.report(0.0)
     }
 
     fn on_step(&mut self, done: usize, of: usize) -> ControlFlow<()> {
-        self.tell(done as f64 / of.max(1) as f64)
+        self.report(done as f64 / of.max(1) as f64)
     }
 }

@@ -67,13 +67,13 @@ fn models_and_effects_with_parameters_and_units() {
     }
     let coulomb = effects.iter().find(|e| e["name"] == "coulomb_friction").unwrap();
     assert_eq!(coulomb["of"], "a velocity");
-    let knobs: Vec<&str> = coulomb["parameters"]
+    let parameters: Vec<&str> = coulomb["parameters"]
         .as_array()
         .unwrap()
         .iter()
         .map(|k| k["name"].as_str().unwrap())
         .collect();
-    assert_eq!(knobs, ["level", "width"]);
+    assert_eq!(parameters, ["level", "width"]);
 }
 
 #[test]

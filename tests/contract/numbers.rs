@@ -162,7 +162,7 @@ pub fn effect_answer(
     states: &[[f64; 8]],
 ) -> Vec<F64x8> {
     let card = effect.card();
-    let knobs: Vec<F64x8> = card.values().iter().map(|&v| F64x8::constant(v)).collect();
+    let parameters: Vec<F64x8> = card.values().iter().map(|&v| F64x8::constant(v)).collect();
     let (mut z, mut rate) = (F64x8::constant(0.0), F64x8::constant(0.0));
     for (l, &[value, slope]) in at.iter().enumerate() {
         (z.0[l], rate.0[l]) = (value, slope);
@@ -178,7 +178,7 @@ pub fn effect_answer(
     let mut rates = vec![F64x8::constant(0.0); card.states];
     let block = EffectBlock {
         packs: 1,
-        knobs: &knobs,
+        parameters: &parameters,
         coordinates: &[z],
         rate: &[rate],
         has_rate: true,

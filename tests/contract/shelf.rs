@@ -81,15 +81,15 @@ pub fn working(effect: &dyn CandidateEffect) -> Box<dyn CandidateEffect> {
     }
     let values: Vec<f64> = effect
         .card()
-        .knobs
+        .parameters
         .iter()
-        .map(|knob| match knob.role {
-            Role::Choice => knob.value,
+        .map(|effect_parameter| match effect_parameter.role {
+            Role::Choice => effect_parameter.value,
             // lags and delays of a few samples, bounds near the signal, small forces
-            Role::Coefficient => 0.03_f64.clamp(knob.min, knob.max),
-            Role::Shape if knob.name == "low" => -0.02,
-            Role::Shape if knob.name == "high" => 0.03,
-            Role::Shape => 0.5_f64.clamp(knob.min, knob.max),
+            Role::Coefficient => 0.03_f64.clamp(effect_parameter.min, effect_parameter.max),
+            Role::Shape if effect_parameter.name == "low" => -0.02,
+            Role::Shape if effect_parameter.name == "high" => 0.03,
+            Role::Shape => 0.5_f64.clamp(effect_parameter.min, effect_parameter.max),
         })
         .collect();
     effect.with_values(&values).unwrap()
@@ -105,20 +105,27 @@ pub fn neutral(effect: &dyn CandidateEffect) -> Vec<Box<dyn CandidateEffect>> {
         return vec![serde_json::from_value(fields).unwrap()];
     }
     let card = effect.card();
-    let shaped = |shape: &dyn Fn(&lacuna::effect::Knob) -> f64, coefficient: f64| -> Vec<f64> {
-        let knobs = card.knobs.iter();
-        knobs
-            .map(|knob| match knob.role {
-                Role::Coefficient => coefficient.clamp(knob.min, knob.max),
-                Role::Choice => knob.value,
-                Role::Shape => shape(knob),
+    let shaped = |shape: &dyn Fn(&lacuna::effect::EffectParameter) -> f64,
+                  coefficient: f64|
+     -> Vec<f64> {
+        let effect_parameters = card.parameters.iter();
+        effect_parameters
+            .map(|effect_parameter| match effect_parameter.role {
+                Role::Coefficient => coefficient.clamp(effect_parameter.min, effect_parameter.max),
+                Role::Choice => effect_parameter.value,
+                Role::Shape => shape(effect_parameter),
             })
             .collect()
     };
     let tries = [
         card.values(),
-        shaped(&|knob| if knob.value.is_finite() { 0.37 } else { knob.value }, 0.0),
-        shaped(&|knob| knob.neutral.unwrap_or(0.37), 1.0),
+        shaped(
+            &|effect_parameter| {
+                if effect_parameter.value.is_finite() { 0.37 } else { effect_parameter.value }
+            },
+            0.0,
+        ),
+        shaped(&|effect_parameter| effect_parameter.neutral.unwrap_or(0.37), 1.0),
     ];
     let neutral = tries.iter().filter(|values| card.is_neutral(values));
     neutral.map(|values| effect.with_values(values).unwrap()).collect()

@@ -70,7 +70,7 @@ fn duals_of_every_model_meet_differences() {
     }
 }
 
-/// w and the rates with slopes: lanes 0.. of the answer's slope along one quantity: knob
+/// w and the rates with slopes: lanes 0.. of the answer's slope along one quantity: parameter
 /// number `i`, then the coordinate, the rate, the own states.
 fn effect_slope(effect: &dyn CandidateEffect, values: &[f64], along: usize) -> Vec<f64> {
     let card = effect.card();
@@ -85,12 +85,12 @@ fn effect_slope(effect: &dyn CandidateEffect, values: &[f64], along: usize) -> V
             dual
         })
         .collect();
-    let n = card.knobs.len();
+    let n = card.parameters.len();
     let mut w = [Dual64::constant(0.0)];
     let mut rates = vec![Dual64::constant(0.0); card.states];
     let block = EffectBlock {
         packs: 1,
-        knobs: &duals[..n],
+        parameters: &duals[..n],
         coordinates: &duals[n..n + 1],
         rate: &duals[n + 1..n + 2],
         has_rate: true,
@@ -102,7 +102,7 @@ fn effect_slope(effect: &dyn CandidateEffect, values: &[f64], along: usize) -> V
 
 /// The same answer in plain numbers.
 fn effect_value(effect: &dyn CandidateEffect, values: &[f64]) -> Vec<f64> {
-    let n = effect.card().knobs.len();
+    let n = effect.card().parameters.len();
     let moved = effect.with_values(&values[..n]).unwrap();
     let states: Vec<[f64; 8]> = values[n + 2..].iter().map(|&s| [s; 8]).collect();
     let out = effect_answer(moved.as_ref(), &[[values[n], values[n + 1]]; 8], &states);
@@ -120,7 +120,8 @@ fn duals_of_every_effect_meet_differences() {
             values.extend([z, rate]);
             values.extend((0..own.states).map(|i| 0.3 - 0.7 * i as f64));
             for along in 0..values.len() {
-                if own.knobs.get(along).is_some_and(|k| k.role == lacuna::effect::Role::Choice) {
+                if own.parameters.get(along).is_some_and(|k| k.role == lacuna::effect::Role::Choice)
+                {
                     continue;
                 }
                 let exact = effect_slope(effect.as_ref(), &values, along);

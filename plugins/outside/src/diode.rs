@@ -20,8 +20,12 @@ impl Default for Diode {
 
 impl Effect for Diode {
     fn card(&self) -> EffectCard {
-        let saturation = Knob::coefficient("saturation", self.saturation, UnitRule::Channel);
-        EffectCard::law(vec![saturation, Knob::shape("scale", self.scale, UnitRule::Coordinate)])
+        let saturation =
+            EffectParameter::coefficient("saturation", self.saturation, UnitRule::Channel);
+        EffectCard::law(vec![
+            saturation,
+            EffectParameter::shape("scale", self.scale, UnitRule::Coordinate),
+        ])
     }
 
     fn title(&self, _: &Named) -> String {
@@ -29,8 +33,8 @@ impl Effect for Diode {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
-        let &[saturation, scale] = at.knobs();
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
+        let &[saturation, scale] = at.parameters();
         saturation * ((at.z() / scale).exp() - 1.0)
     }
 

@@ -23,10 +23,10 @@ fn call(folder: &Path, arguments: &str) -> Output {
 
 fn done(folder: &Path, arguments: &str) -> String {
     let output = call(folder, arguments);
-    let told = String::from_utf8_lossy(&output.stdout).into_owned()
+    let text = String::from_utf8_lossy(&output.stdout).into_owned()
         + &String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments}: {told}");
-    told
+    assert!(output.status.success(), "{arguments}: {text}");
+    text
 }
 
 /// Columns of a record with a slow random input, from a map of state and input.

@@ -65,11 +65,11 @@ impl Follow for Progress<'_> {
             }
         }
         self.last = text;
-        self.tell(0.0)
+        self.report(0.0)
     }
 
     fn on_step(&mut self, done: usize, of: usize) -> ControlFlow<()> {
-        self.tell(done as f64 / of.max(1) as f64)
+        self.report(done as f64 / of.max(1) as f64)
     }
 }
 
@@ -79,9 +79,9 @@ impl<'a> Progress<'a> {
         Self { look, epochs, last: String::new(), at: 0, page }
     }
 
-    fn tell(&self, of_epoch: f64) -> ControlFlow<()> {
+    fn report(&self, of_epoch: f64) -> ControlFlow<()> {
         let done = (self.at as f64 + of_epoch) / self.epochs.max(1) as f64;
-        self.look.tell(done.min(1.0), &self.last);
+        self.look.report(done.min(1.0), &self.last);
         if self.look.stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

@@ -14,8 +14,8 @@ use lacuna::system::System;
 pub fn configured(document: &Document, config: &Path) -> Result<(Exam, Vec<System>), Failure> {
     let exam: Exam = document.read()?;
     exam.check().map_err(|error| Failure::from(error).in_file(config, document, [""; 2]))?;
-    let beside = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
-    let load = |machine: &lacuna::study::Machine| Ok(input::model(&beside(&machine.model))?.0);
+    let relative = |name: &String| config.parent().unwrap_or(Path::new("")).join(name);
+    let load = |machine: &lacuna::study::Machine| Ok(input::model(&relative(&machine.model))?.0);
     let systems = exam.systems.iter().map(load).collect::<Result<_, Failure>>()?;
     Ok((exam, systems))
 }

@@ -314,9 +314,9 @@ pub enum DataError {
 
 /// `a, b, c`; a column without a name is shown as such.
 fn list(names: &[String]) -> String {
-    let shown: Vec<&str> =
+    let listed: Vec<&str> =
         names.iter().map(|name| if name.is_empty() { "(no name)" } else { name }).collect();
-    shown.join(", ")
+    listed.join(", ")
 }
 
 impl DataError {

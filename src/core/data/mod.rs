@@ -53,20 +53,20 @@ pub mod unit;
 mod write;
 
 pub use error::DataError;
-pub use excite::{Excitation, FilteredNoise, Lines, Multisine, Phases, Prbs, Sequence, Steps};
-pub use record::{Record, Signal};
-pub use table::Table;
+pub use excite::{Excitation, FilteredNoise, Lines, Multisine, Phases, Prbs, Steps};
+pub use record::Record;
 
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
 pub use self::{
     bare::Bare,
-    excite::crest_factor,
+    excite::{Sequence, crest_factor},
     matching::{Want, read_for},
     periods::Periods,
     random::Random,
     reading::Reading,
+    record::Signal,
     remark::Remark,
     step::Step,
-    table::Column,
+    table::{Column, Table},
 };

@@ -1,7 +1,7 @@
 //! Whether the inputs of a record repeat, which is how noise is told from model error.
 
 use super::record::Record;
-use realfft::RealFftPlanner;
+use crate::fourier;
 
 /// The period of a record's inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -74,9 +74,7 @@ impl<'a> Moving<'a> {
     fn candidates(&self) -> Vec<usize> {
         let n = self.values.len();
         let length = (2 * n).next_power_of_two();
-        let mut planner = RealFftPlanner::<f64>::new();
-        let (forward, inverse) =
-            (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
+        let (forward, inverse) = (fourier::forward(length), fourier::inverse(length));
         let mut padded = forward.make_input_vec();
         for (slot, value) in padded.iter_mut().zip(self.values) {
             *slot = (value - self.mean) / self.rms;

@@ -7,7 +7,7 @@ use super::properties::Properties;
 use super::unit::UnitRule;
 use crate::model::Quantity;
 
-/// What a knob does to the shape of the effect.
+/// What a parameter does to the shape of the effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Role {
     /// The effect is proportional to it: 0 means absent.
@@ -20,13 +20,13 @@ pub enum Role {
 
 /// One parameter of an effect.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Knob {
+pub struct EffectParameter {
     /// Name: the key in model files and the field of the effect's struct (`values.3` is the
     /// fourth of a list).
     pub name: Cow<'static, str>,
     /// Present value; infinite where an optional bound is absent.
     pub value: f64,
-    /// Value at which the effect vanishes whatever the other knobs say, if there is one.
+    /// Value at which the effect vanishes whatever the other parameters say, if there is one.
     pub neutral: Option<f64>,
     /// What it does.
     pub role: Role,
@@ -38,7 +38,7 @@ pub struct Knob {
     pub max: f64,
 }
 
-impl Knob {
+impl EffectParameter {
     /// A coefficient: the effect is proportional to it.
     pub fn coefficient(name: impl Into<Cow<'static, str>>, value: f64, unit: UnitRule) -> Self {
         Self {
@@ -52,12 +52,12 @@ impl Knob {
         }
     }
 
-    /// A shape knob, positive.
+    /// A shape parameter, positive.
     pub fn shape(name: impl Into<Cow<'static, str>>, value: f64, unit: UnitRule) -> Self {
         Self { neutral: None, role: Role::Shape, min: 0.0, ..Self::coefficient(name, value, unit) }
     }
 
-    /// The same knob with its allowed range.
+    /// The same parameter with its allowed range.
     #[must_use]
     pub fn within(mut self, min: f64, max: f64) -> Self {
         self.min = min;
@@ -65,7 +65,7 @@ impl Knob {
         self
     }
 
-    /// The same knob with the value at which the effect vanishes.
+    /// The same parameter with the value at which the effect vanishes.
     #[must_use]
     pub fn neutral_at(mut self, neutral: f64) -> Self {
         self.neutral = Some(neutral);
@@ -142,14 +142,14 @@ pub struct Places {
     /// Into a parameter.
     pub parameter: bool,
     /// Into an output, of an input (a path beside the model).
-    pub beside: bool,
+    pub feedthrough: bool,
 }
 
 /// Everything an effect declares.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EffectCard {
     /// Its parameters, in the order of the law's slice.
-    pub knobs: Vec<Knob>,
+    pub parameters: Vec<EffectParameter>,
     /// States of its own.
     pub states: usize,
     /// How it is carried out.
@@ -162,7 +162,7 @@ pub struct EffectCard {
     pub sign: SignRule,
     /// How simple it is: the lower of two equal explanations is the headline.
     pub rank: u8,
-    /// Knobs that have a fixed value where the effect acts on its own path.
+    /// Parameters that have a fixed value where the effect acts on its own path.
     pub own_path: &'static [(&'static str, f64)],
     /// Names and units of the coordinates that it was made for, in order, an empty text standing
     /// for any; absent where it looks at the first one, whatever that is.
@@ -172,10 +172,10 @@ pub struct EffectCard {
 }
 
 impl EffectCard {
-    /// A law with these knobs, of any coordinate into any channel.
-    pub fn law(knobs: Vec<Knob>) -> Self {
+    /// A law with these parameters, of any coordinate into any channel.
+    pub fn law(parameters: Vec<EffectParameter>) -> Self {
         Self {
-            knobs,
+            parameters,
             states: 0,
             mechanism: Mechanism::Law,
             needs: Needs::Coordinate,
@@ -238,15 +238,15 @@ impl EffectCard {
         self
     }
 
-    /// Present values of the knobs.
+    /// Present values of the parameters.
     pub fn values(&self) -> Vec<f64> {
-        self.knobs.iter().map(|knob| knob.value).collect()
+        self.parameters.iter().map(|parameter| parameter.value).collect()
     }
 
     /// Whether the values make the effect vanish.
     pub fn is_neutral(&self, values: &[f64]) -> bool {
         let coefficients =
-            self.knobs.iter().zip(values).filter(|(k, _)| k.role == Role::Coefficient);
+            self.parameters.iter().zip(values).filter(|(k, _)| k.role == Role::Coefficient);
         let mut any = false;
         let mut all_zero = true;
         for (_, value) in coefficients {
@@ -256,7 +256,7 @@ impl EffectCard {
         if any && all_zero {
             return true;
         }
-        let shapes = || self.knobs.iter().zip(values).filter(|(k, _)| k.role == Role::Shape);
+        let shapes = || self.parameters.iter().zip(values).filter(|(k, _)| k.role == Role::Shape);
         let with_neutral = shapes().filter(|(k, _)| k.neutral.is_some()).count();
         with_neutral > 0
             && shapes().all(|(k, value)| k.neutral.is_none_or(|neutral| neutral == *value))

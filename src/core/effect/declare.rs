@@ -77,6 +77,6 @@ impl EffectCard {
     /// Position of a parameter by its name.
     pub fn position(&self, parameter: Option<&str>) -> Option<usize> {
         let name = parameter?;
-        self.knobs.iter().position(|knob| knob.name == name)
+        self.parameters.iter().position(|parameter| parameter.name == name)
     }
 }

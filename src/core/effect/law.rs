@@ -12,11 +12,11 @@ use crate::model::{Dual32, Dual64, Fault};
 use crate::per_lanes;
 use crate::real::{F32x16, F64x8, Real, Trace};
 
-/// What an effect may look at in one instant.
+/// Arguments of an effect's law w = phi(z, dz/dt, x; theta) in one instant.
 #[derive(Debug, Clone, Copy)]
-pub struct Felt<'a, R> {
-    /// Knobs, in the order of the card.
-    pub knobs: &'a [R],
+pub struct Arguments<'a, R> {
+    /// Parameters, in the order of the card.
+    pub parameters: &'a [R],
     /// The coordinate z (first) and the further ones of `also_of`.
     pub coordinates: &'a [R],
     /// Rate of change of z, where the card asks for it and it is known.
@@ -27,7 +27,7 @@ pub struct Felt<'a, R> {
     pub states: &'a [R],
 }
 
-impl<'a, R: Copy> Felt<'a, R> {
+impl<'a, R: Copy> Arguments<'a, R> {
     /// The coordinate z.
     #[inline(always)]
     pub fn z(&self) -> R {
@@ -48,17 +48,19 @@ impl<'a, R: Copy> Felt<'a, R> {
         }
     }
 
-    /// The knobs as an array, in the order of the card.
+    /// The parameters as an array, in the order of the card.
     ///
     /// # Panics
     ///
-    /// If the card declares another number of knobs.
+    /// If the card declares another number of parameters.
     #[inline(always)]
     #[track_caller]
-    pub fn knobs<const N: usize>(&self) -> &'a [R; N] {
-        match self.knobs.try_into() {
+    pub fn parameters<const N: usize>(&self) -> &'a [R; N] {
+        match self.parameters.try_into() {
             Ok(array) => array,
-            Err(_) => panic!("this effect declares another number of knobs than its law takes"),
+            Err(_) => {
+                panic!("this effect declares another number of parameters than its law takes")
+            }
         }
     }
 }
@@ -80,14 +82,14 @@ impl<'a, R: Copy> Felt<'a, R> {
 /// impl Effect for SquareRoot {
 ///     fn card(&self) -> EffectCard {
 ///         let unit = UnitRule::Channel;
-///         EffectCard::law(vec![Knob::coefficient("coefficient", self.coefficient, unit)])
+///         EffectCard::law(vec![EffectParameter::coefficient("coefficient", self.coefficient, unit)])
 ///     }
 ///     fn title(&self, _: &Named) -> String {
 ///         "An orifice".into()
 ///     }
 ///     #[inline(always)]
-///     fn law<R: Real>(&self, at: &Felt<R>, _rates: &mut [R]) -> R {
-///         let &[coefficient] = at.knobs();
+///     fn law<R: Real>(&self, at: &Arguments<R>, _rates: &mut [R]) -> R {
+///         let &[coefficient] = at.parameters();
 ///         coefficient * at.z().signum() * at.z().abs().sqrt()
 ///     }
 /// }
@@ -97,7 +99,7 @@ impl<'a, R: Copy> Felt<'a, R> {
 pub trait Effect:
     Debug + Clone + Default + Serialize + DeserializeOwned + Send + Sync + 'static
 {
-    /// Knobs, places, sign rule.
+    /// Parameters, places, sign rule.
     fn card(&self) -> EffectCard;
 
     /// The cause in words, at the start of a sentence: "Dry friction".
@@ -112,14 +114,14 @@ pub trait Effect:
         None
     }
 
-    /// What is wrong with its values beyond the ranges of its knobs, if anything is: lists of
+    /// What is wrong with its values beyond the ranges of its parameters, if anything is: lists of
     /// different lengths, bounds in the wrong order. Keys are those of the effect's own table.
     fn fault(&self) -> Option<Fault> {
         None
     }
 
     /// w, and the rates of change of the own states.
-    fn law<R: Real>(&self, at: &Felt<R>, rates: &mut [R]) -> R;
+    fn law<R: Real>(&self, at: &Arguments<R>, rates: &mut [R]) -> R;
 
     /// Where a search for this effect starts, given the course of its coordinate.
     fn search(&self, view: &View) -> Search {
@@ -133,8 +135,8 @@ pub trait Effect:
 pub struct EffectBlock<'a, R> {
     /// Number of packs.
     pub packs: usize,
-    /// Knobs, pack by pack.
-    pub knobs: &'a [R],
+    /// Parameters, pack by pack.
+    pub parameters: &'a [R],
     /// Coordinates, pack by pack.
     pub coordinates: &'a [R],
     /// Rate of the first coordinate, one per pack.
@@ -163,7 +165,7 @@ pub enum EffectCall<'a> {
 
 /// The object-safe face of an effect, filled in for everything that is an [`Effect`].
 pub trait Shape: Debug + Send + Sync {
-    /// Knobs, places, sign rule.
+    /// Parameters, places, sign rule.
     fn card(&self) -> EffectCard;
     /// The cause in words.
     fn title(&self, named: &Named) -> String;
@@ -180,7 +182,7 @@ pub trait Shape: Debug + Send + Sync {
     fn search(&self, view: &View) -> Search;
     /// Answers one block.
     fn answer(&self, call: EffectCall<'_>);
-    /// The same effect with other values of its knobs, in the order of the card.
+    /// The same effect with other values of its parameters, in the order of the card.
     ///
     /// # Errors
     ///
@@ -233,8 +235,8 @@ impl<E: Effect + CandidateEffect> Shape for E {
 
     fn with_values(&self, values: &[f64]) -> Result<Box<dyn CandidateEffect>, serde_json::Error> {
         let mut fields = serde_json::to_value(self)?;
-        for (knob, &value) in Effect::card(self).knobs.iter().zip(values) {
-            set_field(&mut fields, &knob.name, value);
+        for (parameter, &value) in Effect::card(self).parameters.iter().zip(values) {
+            set_field(&mut fields, &parameter.name, value);
         }
         let effect: Self = serde_json::from_value(fields)?;
         Ok(Box::new(effect))
@@ -245,7 +247,7 @@ impl<E: Effect + CandidateEffect> Shape for E {
     }
 }
 
-/// Sets the field that a knob is named after; `values.3` is the fourth of a list. A value
+/// Sets the field that a parameter is named after; `values.3` is the fourth of a list. A value
 /// that is not finite stands for an absent bound and is taken out: infinity is never written.
 fn set_field(fields: &mut serde_json::Value, name: &str, value: f64) {
     let number = serde_json::Number::from_f64(value);
@@ -281,12 +283,12 @@ per_lanes! {
 #[inline(always)]
 fn each<E: Effect, R: Real>(effect: &E, block: &EffectBlock<'_, R>, w: &mut [R], rates: &mut [R]) {
     let packs = block.packs.max(1);
-    let knobs = block.knobs.len() / packs;
+    let parameters = block.parameters.len() / packs;
     let states = block.states.len() / packs;
     let seen = block.coordinates.len() / packs;
     for pack in 0..block.packs {
-        let at = Felt {
-            knobs: &block.knobs[pack * knobs..][..knobs],
+        let at = Arguments {
+            parameters: &block.parameters[pack * parameters..][..parameters],
             coordinates: &block.coordinates[pack * seen..][..seen],
             rate: block.rate[pack],
             has_rate: block.has_rate,

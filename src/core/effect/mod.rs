@@ -16,8 +16,8 @@ mod unit;
 mod view;
 mod written;
 
-pub use card::{EffectCard, Knob, Mechanism, Named, Needs, Places, Role, SignRule};
-pub use law::{CandidateEffect, Effect, Felt};
+pub use card::{EffectCard, EffectParameter, Named, Needs, Places, SignRule};
+pub use law::{Arguments, CandidateEffect, Effect};
 pub use properties::{ShapeOf, Size};
 pub use search::Search;
 pub use unit::UnitRule;
@@ -26,6 +26,7 @@ pub use view::View;
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
 pub use self::{
+    card::{Mechanism, Role},
     curve::curve,
     definition::{DefinedParameter, DefinedRole, Definition},
     error::{DefinitionError, DefinitionProblem},

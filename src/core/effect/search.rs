@@ -2,10 +2,10 @@
 
 use super::card::{EffectCard, Role};
 
-/// Where the search for an effect starts: values for every knob, coefficients at 0.
+/// Where the search for an effect starts: values for every parameter, coefficients at 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Search {
-    /// Grid of starting values of the knobs. Infinite shape values stay as they are.
+    /// Grid of starting values of the parameters. Infinite shape values stay as they are.
     pub starts: Vec<Vec<f64>>,
     /// Smallest values worth trying.
     pub min: Vec<f64>,
@@ -16,31 +16,39 @@ pub struct Search {
 }
 
 impl Search {
-    /// One start at the card's values, coefficients at zero, inside the knobs' ranges.
+    /// One start at the card's values, coefficients at zero, inside the parameters' ranges.
     pub fn plain(card: &EffectCard) -> Self {
         let start = card
-            .knobs
+            .parameters
             .iter()
-            .map(|knob| if knob.role == Role::Coefficient { 0.0 } else { knob.value })
+            .map(
+                |parameter| if parameter.role == Role::Coefficient { 0.0 } else { parameter.value },
+            )
             .collect();
         Self {
             starts: vec![start],
-            min: card.knobs.iter().map(|knob| knob.min).collect(),
-            max: card.knobs.iter().map(|knob| knob.max).collect(),
+            min: card.parameters.iter().map(|parameter| parameter.min).collect(),
+            max: card.parameters.iter().map(|parameter| parameter.max).collect(),
             thresholds: false,
         }
     }
 
-    /// Replaces the starts by a grid over one knob and narrows its range.
+    /// Replaces the starts by a grid over one parameter and narrows its range.
     ///
     /// # Panics
     ///
-    /// If the card has no such knob.
+    /// If the card has no such parameter.
     #[must_use]
     #[track_caller]
-    pub fn over(mut self, card: &EffectCard, knob: &str, grid: &[f64], range: (f64, f64)) -> Self {
-        let index = card.knobs.iter().position(|k| k.name == knob);
-        let Some(index) = index else { panic!("no knob called {knob}") };
+    pub fn over(
+        mut self,
+        card: &EffectCard,
+        parameter: &str,
+        grid: &[f64],
+        range: (f64, f64),
+    ) -> Self {
+        let index = card.parameters.iter().position(|k| k.name == parameter);
+        let Some(index) = index else { panic!("no parameter called {parameter}") };
         let first = self.starts.swap_remove(0);
         self.starts = grid
             .iter()

@@ -1,6 +1,6 @@
-//! Units of knobs.
+//! Units of parameters.
 
-/// The unit of a knob, from the units of where the effect acts.
+/// The unit of a parameter, from the units of where the effect acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum UnitRule {
     /// No unit.

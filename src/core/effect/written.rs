@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::card::{EffectCard, Knob, Named, Places, Role};
+use super::card::{EffectCard, EffectParameter, Named, Places, Role};
 use super::definition::{DefinedParameter, Definition};
 use super::error::{DefinitionError, DefinitionProblem};
 use super::law::{CandidateEffect, EffectBlock, EffectCall, Shape};
@@ -162,9 +162,9 @@ impl WrittenEffect {
         let (mut numbers, several) = (false, coefficients.len() > 1);
         for start in starts {
             let with = |size: &dyn Fn(usize) -> f64| {
-                let mut knobs = start.clone();
-                coefficients.iter().enumerate().for_each(|(i, &c)| knobs[c] = size(i));
-                super::curve(self, &knobs, &TRIED)
+                let mut effect_parameters = start.clone();
+                coefficients.iter().enumerate().for_each(|(i, &c)| effect_parameters[c] = size(i));
+                super::curve(self, &effect_parameters, &TRIED)
             };
             let none = with(&|_| 0.0);
             if let Some(at) = none.iter().position(|w| *w != 0.0 && w.is_finite()) {
@@ -202,7 +202,7 @@ impl WrittenEffect {
     }
 
     fn run<R: Stored>(&self, block: &EffectBlock<'_, R>, w: &mut [R]) {
-        self.made.law.values(block.packs, block.knobs, block.coordinates, w);
+        self.made.law.values(block.packs, block.parameters, block.coordinates, w);
     }
 }
 
@@ -226,18 +226,18 @@ fn kept(name: &str) -> &'static str {
 
 impl Shape for WrittenEffect {
     fn card(&self) -> EffectCard {
-        let knob = |((name, parameter), &value): (&(String, _), &f64)| {
+        let effect_parameter = |((name, parameter), &value): (&(String, _), &f64)| {
             let parameter: &DefinedParameter = parameter;
             let (min, max) = parameter.bounds();
             let (name, unit) = (name.clone(), UnitRule::Stated(kept(&parameter.unit)));
             match parameter.role() {
-                Role::Coefficient => Knob::coefficient(name, value, unit),
-                _ => Knob::shape(name, value, unit),
+                Role::Coefficient => EffectParameter::coefficient(name, value, unit),
+                _ => EffectParameter::shape(name, value, unit),
             }
             .within(min, max)
         };
         let parameters = &self.made.definition.parameters;
-        EffectCard::law(parameters.iter().zip(&self.values).map(knob).collect())
+        EffectCard::law(parameters.iter().zip(&self.values).map(effect_parameter).collect())
             .places(Places { channel: true, input: true, output: true, ..Places::default() })
             .rank(0)
     }

@@ -114,7 +114,7 @@ impl<'a> Run<'a> {
     pub(super) fn lane(&self, starts: Vec<Vec<f64>>) -> Lane {
         Lane {
             theta: self.plan.signals.theta(),
-            knobs: self.plan.knob_values(),
+            effect_values: self.plan.effect_values(),
             starts,
             ..Lane::default()
         }
@@ -251,10 +251,11 @@ impl<'a> Run<'a> {
         let mut r = vec![];
         for ((y, gross), simulated) in self.measured.iter().zip(&self.gross).zip(&track.y) {
             let Some(y) = y else { continue };
-            let told = |k: &usize| y[*k].is_finite() && gross.binary_search(k).is_err();
-            let known: Vec<f64> = range.clone().filter(told).map(|k| y[k] - simulated[k]).collect();
+            let usable = |k: &usize| y[*k].is_finite() && gross.binary_search(k).is_err();
+            let known: Vec<f64> =
+                range.clone().filter(usable).map(|k| y[k] - simulated[k]).collect();
             // outputs of different unit count by their own spread
-            let values: Vec<f64> = range.clone().filter(told).map(|k| y[k]).collect();
+            let values: Vec<f64> = range.clone().filter(usable).map(|k| y[k]).collect();
             let centre = values.iter().sum::<f64>() / values.len().max(1) as f64;
             let spread = (values.iter().map(|v| (v - centre).powi(2)).sum::<f64>()
                 / values.len().max(1) as f64)

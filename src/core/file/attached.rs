@@ -56,7 +56,7 @@ pub fn gathered(document: &Document) -> Result<Option<Document>, FileError> {
         }
         let path = folder.join(name);
         match Document::load(&path) {
-            Ok(beside) => own.value = numbers(&beside, &file.node.span)?,
+            Ok(attached) => own.value = numbers(&attached, &file.node.span)?,
             Err(FileError::Open { source, .. }) => {
                 let (file_name, reason) = (path.display().to_string(), source.to_string());
                 let complaint = Complaint::Attached { file: file_name, reason };
@@ -80,16 +80,16 @@ fn child<'a>(node: &'a mut Node, key: &str) -> Option<&'a mut Node> {
 }
 
 /// What a file beside holds, if it is what it has to be, as if it stood at `at`.
-fn numbers(beside: &Document, at: &Range<usize>) -> Result<Value, FileError> {
-    let root = beside.root();
+fn numbers(attached: &Document, at: &Range<usize>) -> Result<Value, FileError> {
+    let root = attached.root();
     let Value::Table(entries) = &root.value else {
         let (found, expected) = ("something else".into(), "a table".into());
-        return Err(beside.fault("", root.span.clone(), Complaint::Kind { found, expected }));
+        return Err(attached.fault("", root.span.clone(), Complaint::Kind { found, expected }));
     };
     let wanted = [("format", format!("{FORMAT:?}")), ("version", VERSION.to_string())];
     for (key, expected) in wanted {
         let Some(entry) = root.entry(key) else {
-            return Err(beside.fault(
+            return Err(attached.fault(
                 key,
                 root.span.clone(),
                 Complaint::MissingKey { key: key.into() },
@@ -103,7 +103,7 @@ fn numbers(beside: &Document, at: &Range<usize>) -> Result<Value, FileError> {
         };
         if found != expected {
             let complaint = Complaint::Kind { found, expected };
-            return Err(beside.fault(key, entry.node.span.clone(), complaint));
+            return Err(attached.fault(key, entry.node.span.clone(), complaint));
         }
     }
     let kept: Vec<Entry> =
@@ -114,7 +114,7 @@ fn numbers(beside: &Document, at: &Range<usize>) -> Result<Value, FileError> {
     // tried here, where every fault still has its place
     read::<Box<dyn CandidateEffect>>(&effect).map_err(|Found { key, at, complaint }| {
         let key = key.strip_prefix(NETWORK).unwrap_or(&key);
-        beside.fault(key.trim_start_matches('.'), at, complaint)
+        attached.fault(key.trim_start_matches('.'), at, complaint)
     })?;
     stand_at(&mut own, at);
     Ok(own.value)

@@ -125,8 +125,8 @@ fn key(error: &SystemError, effects: &[Placed]) -> String {
             let number = placed.also_of.iter().position(|also| also == of)?;
             (placed.of.as_ref() != Some(of)).then(|| format!("effects[{index}].also_of[{number}]"))
         }),
-        SystemError::KnobRange { index, effect, knob, .. } => {
-            Some(format!("effects[{index}].effect.{effect}.{knob}"))
+        SystemError::EffectParameterRange { index, effect, parameter, .. } => {
+            Some(format!("effects[{index}].effect.{effect}.{parameter}"))
         }
         _ => None,
     };

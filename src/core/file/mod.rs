@@ -28,7 +28,7 @@ use std::path::Path;
 
 use crate::system::System;
 
-pub use document::{Document, Format};
+pub use document::Format;
 pub use error::FileError;
 pub use write::{save, to_toml};
 
@@ -36,6 +36,7 @@ pub use write::{save, to_toml};
 #[doc(hidden)]
 pub use self::{
     complaint::Complaint,
+    document::Document,
     source::Spot,
     write::{save_with, to_toml_with},
 };

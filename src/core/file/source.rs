@@ -84,7 +84,7 @@ impl Spot {
         let characters = self.line.chars().count();
         let skipped =
             if characters > EXCERPT { (column - 1).saturating_sub(EXCERPT / 2) } else { 0 };
-        let shown: String = self
+        let excerpt: String = self
             .line
             .chars()
             .skip(skipped)
@@ -98,7 +98,7 @@ impl Spot {
         let margin = " ".repeat(number.to_string().len());
         let mut text = String::new();
         // writing to a string cannot fail
-        let _ = writeln!(text, " {number} | {before}{shown}{after}");
+        let _ = writeln!(text, " {number} | {before}{excerpt}{after}");
         let _ = write!(text, " {margin} | {}{}", " ".repeat(indent), "^".repeat(width));
         text
     }

@@ -78,14 +78,14 @@ pub fn save_with(system: &System, path: &Path, header: &[String]) -> Result<(), 
     let name = path.display().to_string();
     let text = || {
         let mut tables = tables(system)?;
-        let beside = detached(&mut tables, path);
+        let attached = detached(&mut tables, path);
         let text = match Format::of(path, "") {
             Format::Toml => lines::model_file(&tables, header),
             Format::Json => json(tables)?,
         };
-        Ok((text, beside))
+        Ok((text, attached))
     };
-    let (text, beside) = text().map_err(|error| match error {
+    let (text, attached) = text().map_err(|error| match error {
         FileError::Infinite { key, value, .. } => {
             FileError::Infinite { at: Box::new(Spot::file(&name)), key, value }
         }
@@ -96,7 +96,7 @@ pub fn save_with(system: &System, path: &Path, header: &[String]) -> Result<(), 
     })?;
     // what the model file names is there before it
     for (path, text) in
-        beside.iter().map(|(path, text)| (path.as_path(), text)).chain([(path, &text)])
+        attached.iter().map(|(path, text)| (path.as_path(), text)).chain([(path, &text)])
     {
         let name = path.display().to_string();
         write_text(path, text)

@@ -8,9 +8,8 @@
 //! feedback; a record whose input repeats cannot show it, because its future is its past.
 
 use crate::data::Record;
+use crate::fourier::{self, Complex};
 use crate::statistics::levinson;
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -55,8 +54,7 @@ fn covariance(a: &[f64], b: &[f64], lags: usize) -> (Vec<f64>, Vec<f64>) {
         return (vec![], vec![]);
     }
     let size = (2 * n).next_power_of_two();
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, inverse) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
+    let (forward, inverse) = (fourier::forward(size), fourier::inverse(size));
     let transform = |x: &[f64]| {
         let known: Vec<f64> = x.iter().copied().filter(|v| v.is_finite()).collect();
         let mean = known.iter().sum::<f64>() / known.len().max(1) as f64;
@@ -109,15 +107,15 @@ pub(super) fn responses(record: &Record) -> Vec<Response> {
         let known = errors.len() < 2 || errors.last().is_none_or(|left| *left < KNOWN);
         for output in &record.outputs {
             let y = &output.values[range.clone()];
-            let told = if known { None } else { lags(u, y, &filter) };
-            let delay_samples = told.and_then(|(delay, _)| delay);
+            let estimate = if known { None } else { lags(u, y, &filter) };
+            let delay_samples = estimate.and_then(|(delay, _)| delay);
             found.push(Response {
                 input: input.name.clone(),
                 output: output.name.clone(),
                 delay_samples,
                 delay: delay_samples.map(|samples| samples as f64 * record.sampling_time),
                 input_is_known: known,
-                reacts: told.filter(|_| !repeats).map(|(_, reacts)| reacts),
+                reacts: estimate.filter(|_| !repeats).map(|(_, reacts)| reacts),
             });
         }
     }

@@ -6,12 +6,12 @@
 //! the multiple coherence of unrelated signals with m inputs as Beta(m, K - m) (Goodman 1963;
 //! Bendat, Piersol, Random Data, 4th ed. 2010, 9.3).
 
-use crate::data::Record;
 use nalgebra::DMatrix;
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
 use serde::Serialize;
 use statrs::distribution::{Beta, ChiSquared, ContinuousCDF};
+
+use crate::data::Record;
+use crate::fourier::{self, Complex};
 
 /// Pieces that are aimed at, and their least and greatest length.
 const PIECES: usize = 16;
@@ -86,7 +86,7 @@ impl Spectra {
         let window: Vec<f64> = (0..length)
             .map(|k| 0.5 - 0.5 * (std::f64::consts::TAU * k as f64 / length as f64).cos())
             .collect();
-        let forward = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+        let forward = fourier::forward(length);
         for segment in &record.segments {
             let mut start = segment.start;
             while start + length <= segment.end {
@@ -177,8 +177,8 @@ impl Spectra {
                 continue;
             }
             // a Hann window spreads a line over its neighbours
-            let beside = (1..bins).filter(|i| (3..=SURROUNDINGS).contains(&i.abs_diff(k)));
-            let mut others: Vec<f64> = beside.map(|i| density[i]).collect();
+            let neighbours = (1..bins).filter(|i| (3..=SURROUNDINGS).contains(&i.abs_diff(k)));
+            let mut others: Vec<f64> = neighbours.map(|i| density[i]).collect();
             others.sort_by(f64::total_cmp);
             let floor = others.get(others.len() / 2).copied().unwrap_or(f64::INFINITY);
             // on both sides, so that an edge of a band is no line

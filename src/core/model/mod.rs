@@ -10,6 +10,7 @@ mod block;
 pub mod equations;
 mod lane_number;
 mod law;
+#[doc(hidden)]
 pub mod linearised;
 pub mod lti;
 mod march;
@@ -22,7 +23,7 @@ mod signals;
 pub use at::At;
 pub use law::Fault;
 pub use physics::Physics;
-pub use signals::{Parameter, Quantity, Signal, Signals, State, TimeKind};
+pub use signals::Signals;
 
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
@@ -31,6 +32,7 @@ pub use self::{
     lane_number::LaneNumber,
     law::{Law, Matrices},
     march::call::{March, MarchCall, Stage, Way},
+    signals::{Parameter, Quantity, Signal, State, TimeKind},
 };
 
 /// A state-space model x' = f(x, u, w), y = h(x, u) that model files can name.

@@ -225,5 +225,9 @@ in_registers!(F32x16, F32x16Avx512, F32x16Avx2);
 impl<R: InRegisters, const D: usize> InRegisters for super::Dual<R, D> {
     type Avx512 = super::Dual<R::Avx512, D>;
     type Avx2 = super::Dual<R::Avx2, D>;
-    type Plain = super::Dual<R::Plain, D>;
+    // an operation on value and slopes is one call, not one for each of them
+    #[cfg(target_arch = "x86_64")]
+    type Plain = super::outlined::Outlined<Self>;
+    #[cfg(not(target_arch = "x86_64"))]
+    type Plain = Self;
 }

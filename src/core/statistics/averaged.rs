@@ -2,7 +2,7 @@
 
 use super::lines::{lines, ratio_tail};
 use super::{autocorrelation, levinson, mean};
-use realfft::num_complex::Complex;
+use crate::fourier::Complex;
 
 /// Past samples that whiten the noise, at most.
 const ORDER: usize = 20;

@@ -1,16 +1,15 @@
 //! Tests that stay honest when residuals are not white: everything is judged block by
 //! block, with blocks as long as the errors remember.
 
-use realfft::num_complex::Complex;
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
-use super::plans;
+use crate::fourier::{self, Complex};
 
 /// Blocks at most and at least.
 const MOST: usize = 40;
 const LEAST: usize = 8;
 /// Share of the largest block's that a block must hold to say something about the error.
-const TELLING: f64 = 0.01;
+const INFORMATIVE: f64 = 0.01;
 /// Scores beyond this are reported as this.
 const HIGHEST: f64 = 37.0;
 
@@ -60,7 +59,7 @@ pub fn autocorrelation(x: &[f64], lags: usize) -> Vec<f64> {
     let n = x.len();
     let size = (2 * n).next_power_of_two();
     let centre = mean(x);
-    let (forward, backward) = (plans::forward(size), plans::inverse(size));
+    let (forward, backward) = (fourier::forward(size), fourier::inverse(size));
     let mut time: Vec<f64> = x.iter().map(|v| v - centre).collect();
     time.resize(size, 0.0);
     let mut spectrum = forward.make_output_vec();
@@ -186,15 +185,15 @@ fn robust(ff: &[f64], fr: &[f64], count: Option<usize>) -> Option<(f64, f64, f64
     let sums = block_sums(&left, count);
     let in_blocks = block_sums(ff, count);
     let largest = in_blocks.iter().copied().fold(0.0, f64::max);
-    let telling = in_blocks.iter().filter(|&&f| f > TELLING * largest).count();
-    if telling < 2 {
+    let informative = in_blocks.iter().filter(|&&f| f > INFORMATIVE * largest).count();
+    if informative < 2 {
         return None;
     }
     // the blocks without f have nothing left by construction
     let freed = |n: usize| n as f64 / (n as f64 - 1.0);
-    let lost = (freed(telling) / freed(sums.len())).sqrt();
+    let lost = (freed(informative) / freed(sums.len())).sqrt();
     let error = (sums.len() as f64).sqrt() * spread(&sums) * lost + 1e-12 * total;
-    Some((weight, error / total, telling as f64 - 1.0))
+    Some((weight, error / total, informative as f64 - 1.0))
 }
 
 /// Ljung-Box statistic on 20 lags as a normal score: how far from white.

@@ -44,8 +44,9 @@ pub fn gross(values: &[f64]) -> Vec<usize> {
     rows.sort_unstable();
     // what lasts is no slip
     let lone = |k: &usize| {
-        let beside = |other: Option<usize>| other.is_some_and(|o| rows.binary_search(&o).is_ok());
-        !(beside(k.checked_sub(1)) && beside(Some(k + 1)))
+        let neighbour =
+            |other: Option<usize>| other.is_some_and(|o| rows.binary_search(&o).is_ok());
+        !(neighbour(k.checked_sub(1)) && neighbour(Some(k + 1)))
     };
     rows.iter().copied().filter(lone).collect()
 }

@@ -1,16 +1,15 @@
 //! Fourier lines of whole periods, and the ratio of two powers.
 
-use realfft::num_complex::Complex;
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
-use super::plans;
+use crate::fourier::{self, Complex};
 
 /// The Fourier transform of whole periods, one line after the other from 0.
 pub fn lines(x: &[f64]) -> Vec<Complex<f64>> {
     if x.is_empty() {
         return vec![];
     }
-    let forward = plans::forward(x.len());
+    let forward = fourier::forward(x.len());
     let mut time = x.to_vec();
     let mut lines = forward.make_output_vec();
     match forward.process(&mut time, &mut lines) {

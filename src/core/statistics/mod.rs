@@ -7,7 +7,6 @@ mod coloured;
 mod gross;
 mod levinson;
 mod lines;
-mod plans;
 mod sandwich;
 mod score_test;
 mod spectrum;

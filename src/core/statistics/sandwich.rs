@@ -95,7 +95,7 @@ mod tests {
         let of_sum = c[(0, 0)] + c[(1, 1)] + 2.0 * c[(0, 1)];
         let expected = variance / 2000.0;
         assert!((0.5..2.0).contains(&(of_sum / expected)), "{of_sum} against {expected}");
-        let alone = c[(0, 0)] / (0.5 * 100.0);
-        assert!((0.9..1.1).contains(&alone), "each is known from the prior alone, {alone}");
+        let single = c[(0, 0)] / (0.5 * 100.0);
+        assert!((0.9..1.1).contains(&single), "each is known from the prior alone, {single}");
     }
 }

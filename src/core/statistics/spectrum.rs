@@ -1,6 +1,6 @@
 //! Spectra of residuals.
 
-use super::plans;
+use crate::fourier;
 
 /// Squared magnitudes of the Fourier transform about the mean, one per line from 0.
 pub fn power(x: &[f64]) -> Vec<f64> {
@@ -12,7 +12,7 @@ fn transform(x: &[f64], size: usize, window: impl Fn(usize) -> f64) -> Vec<f64> 
         return vec![];
     }
     let centre = super::mean(x);
-    let forward = plans::forward(size);
+    let forward = fourier::forward(size);
     let mut time: Vec<f64> = x.iter().enumerate().map(|(k, v)| (v - centre) * window(k)).collect();
     time.resize(size, 0.0);
     let mut lines = forward.make_output_vec();

@@ -75,15 +75,15 @@ pub enum SystemError {
         /// Those that its entry names.
         found: Vec<String>,
     },
-    /// A knob is outside its range.
-    #[error("effect {index} ({effect}): `{knob}` = {value} is outside {min} to {max}")]
-    KnobRange {
+    /// A parameter is outside its range.
+    #[error("effect {index} ({effect}): `{parameter}` = {value} is outside {min} to {max}")]
+    EffectParameterRange {
         /// Position in the list of effects.
         index: usize,
         /// Name of the effect.
         effect: String,
-        /// The knob.
-        knob: String,
+        /// The parameter.
+        parameter: String,
         /// Its value.
         value: f64,
         /// Smallest value allowed.
@@ -149,8 +149,8 @@ impl Explain for SystemError {
             | Self::MadeFor { index, .. }
             | Self::NoRate { index, .. } => format!("effects[{index}].of"),
             Self::NotOnPath { index, .. } => format!("effects[{index}]"),
-            Self::KnobRange { index, effect, knob, .. } => {
-                format!("effects[{index}].effect.{effect}.{knob}")
+            Self::EffectParameterRange { index, effect, parameter, .. } => {
+                format!("effects[{index}].effect.{effect}.{parameter}")
             }
             Self::Value { index, effect, key, .. } => {
                 format!("effects[{index}].effect.{effect}.{key}")
@@ -184,7 +184,7 @@ impl Explain for SystemError {
                 1 => "name that coordinate in `of`, and none in `also_of`".into(),
                 _ => "name the first of them in `of`, the others in `also_of`, in this order".into(),
             },
-            Self::KnobRange { min, max, .. } => format!("use a value from {min} to {max}"),
+            Self::EffectParameterRange { min, max, .. } => format!("use a value from {min} to {max}"),
             Self::Value { expected, .. } => format!("write {expected}"),
             Self::PlaceTwice { .. } => "name each place once".into(),
             Self::NameTwice { .. } => "give one of the two another name".into(),

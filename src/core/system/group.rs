@@ -35,9 +35,9 @@ pub struct Group<'a, R> {
     pub ks: [Vec<R>; 4],
     pub outputs: OutputPaths<R>,
     inputs: InputPaths<R>,
-    knobs: Vec<R>,
+    effect_values: Vec<R>,
     gains: Option<Vec<R>>,
-    /// Parameter and knob of every drift.
+    /// Parameter of the model and of the effect, for every drift.
     drifts: Vec<(usize, usize)>,
     wirings: Vec<Wiring<R>>,
     /// Own coordinates and outputs, where some effect looks at them.
@@ -50,18 +50,21 @@ impl<'a, R: EffectNumber> Group<'a, R> {
     pub fn new(plan: &'a Plan, lanes: &[Lane], first: usize) -> Self {
         let packs = lanes.len().div_ceil(R::LANES).max(1);
         let zeros = |count: usize| vec![R::constant(0.0); packs * count];
-        let knobs = pack::<R>(lanes, packs, plan.knobs, |lane, i| lane.knobs[i]);
+        let effect_values =
+            pack::<R>(lanes, packs, plan.effect_parameters, |lane, i| lane.effect_values[i]);
         let slots = plan.slots.len();
         let gained = lanes.iter().any(|lane| lane.gains.iter().any(|&gain| gain != 1.0));
         let gains = gained.then(|| {
             pack::<R>(lanes, packs, slots, |lane, i| lane.gains.get(i).copied().unwrap_or(1.0))
         });
         let drifts = plan.slots.iter().filter_map(|slot| match slot.way {
-            Way::Drift(p) => Some((p, slot.knobs)),
+            Way::Drift(p) => Some((p, slot.first_parameter)),
             _ => None,
         });
         let wirings: Vec<_> = (0..slots)
-            .filter_map(|slot| Wiring::new(plan, slot, lanes, packs, &knobs, gains.as_deref()))
+            .filter_map(|slot| {
+                Wiring::new(plan, slot, lanes, packs, &effect_values, gains.as_deref())
+            })
             .collect();
         let looks: Vec<Found> = wirings.iter().flat_map(Wiring::looks_at).collect();
         let looks_at_own = looks.iter().any(|found| matches!(found, Found::Own(_)));
@@ -70,8 +73,8 @@ impl<'a, R: EffectNumber> Group<'a, R> {
             inside: wirings.iter().any(|wiring| wiring.to_inside),
             coordinates: zeros(if looks_at_own { plan.sizes.z } else { 0 }),
             seen_outputs: zeros(if looks_at_outputs { plan.sizes.y } else { 0 }),
-            inputs: InputPaths::new(plan, &knobs, packs),
-            outputs: OutputPaths::new(plan, &knobs, packs),
+            inputs: InputPaths::new(plan, &effect_values, packs),
+            outputs: OutputPaths::new(plan, &effect_values, packs),
             drifts: drifts.collect(),
             s: zeros(plan.states),
             st: zeros(plan.states),
@@ -80,7 +83,7 @@ impl<'a, R: EffectNumber> Group<'a, R> {
             plan,
             first,
             packs,
-            knobs,
+            effect_values,
             gains,
             wirings,
         }
@@ -123,16 +126,19 @@ impl<'a, R: EffectNumber> Group<'a, R> {
         for slot in &plan.slots {
             if let Way::Value(p) = slot.way {
                 for pack in 0..self.packs {
-                    theta[pack * n + p] = self.knobs[pack * plan.knobs + slot.knobs];
+                    theta[pack * n + p] =
+                        self.effect_values[pack * plan.effect_parameters + slot.first_parameter];
                 }
             }
         }
     }
 
-    /// Puts other numbers in the place of the knobs.
-    pub fn take_knobs(&mut self, knobs: Vec<R>) {
-        self.wirings.iter_mut().for_each(|wiring| wiring.take_knobs(self.plan, &knobs));
-        self.knobs = knobs;
+    /// Puts other numbers in the place of the parameters of effects.
+    pub fn take_effect_values(&mut self, effect_values: Vec<R>) {
+        self.wirings
+            .iter_mut()
+            .for_each(|wiring| wiring.take_effect_values(self.plan, &effect_values));
+        self.effect_values = effect_values;
     }
 
     /// Everything that it remembers from step to step, delay lines apart.
@@ -172,18 +178,20 @@ impl<'a, R: EffectNumber> Group<'a, R> {
     /// Drifting parameters at a given time, among those of all packs.
     pub fn drift(&self, time: f64, theta: &[R], now: &mut [R]) {
         let n = self.plan.sizes.theta;
-        for &(p, knob) in &self.drifts {
+        for &(p, parameter) in &self.drifts {
             for pack in 0..self.packs {
                 let at = (self.first + pack) * n + p;
-                now[at] = theta[at] + self.knobs[pack * self.plan.knobs + knob] * R::time(time);
+                now[at] = theta[at]
+                    + self.effect_values[pack * self.plan.effect_parameters + parameter]
+                        * R::time(time);
             }
         }
     }
 
     /// Passes the inputs of all packs (start, middle, end) through this group's paths.
     pub fn inputs(&mut self, u: &mut [Vec<R>; 3], h: f64) {
-        let knobs = (&self.knobs[..], self.gains.as_deref());
-        self.inputs.advance(self.plan, knobs, self.first, u, h);
+        let effect_values = (&self.effect_values[..], self.gains.as_deref());
+        self.inputs.advance(self.plan, effect_values, self.first, u, h);
     }
 
     /// Fills what effects look at beyond states, inputs and time.
@@ -235,8 +243,8 @@ impl<'a, R: EffectNumber> Group<'a, R> {
                 wiring.evaluate(self.plan, &self.s, &sight);
             }
         }
-        let knobs = (&self.knobs[..], self.gains.as_deref());
-        self.outputs.advance(self.plan, knobs, &self.wirings, y, h, first);
+        let effect_values = (&self.effect_values[..], self.gains.as_deref());
+        self.outputs.advance(self.plan, effect_values, &self.wirings, y, h, first);
     }
 
     /// Lets what remembers values, not rates, take over the step's end.

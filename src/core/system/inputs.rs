@@ -17,7 +17,7 @@ pub enum Memory<R> {
 
 impl<R: EffectNumber> Memory<R> {
     /// Memory for a slot; a delay line is long enough for the longest delay of any lane.
-    pub fn of(plan: &Plan, slot: &Slot, knobs: &[R], packs: usize) -> Self {
+    pub fn of(plan: &Plan, slot: &Slot, effect_values: &[R], packs: usize) -> Self {
         match slot.card.mechanism {
             Mechanism::Lag => Self::Lag(LagState::new(packs)),
             Mechanism::Play => Self::Play(PlayState::new(packs)),
@@ -25,7 +25,9 @@ impl<R: EffectNumber> Memory<R> {
                 let mut longest: f64 = 0.0;
                 for pack in 0..packs {
                     for lane in 0..R::LANES {
-                        let delay = knobs[pack * plan.knobs + slot.knobs].lane(lane);
+                        let delay = effect_values
+                            [pack * plan.effect_parameters + slot.first_parameter]
+                            .lane(lane);
                         longest = longest.max(delay);
                     }
                 }
@@ -81,9 +83,9 @@ pub struct InputPaths<R> {
 }
 
 impl<R: EffectNumber> InputPaths<R> {
-    pub fn new(plan: &Plan, knobs: &[R], packs: usize) -> Self {
+    pub fn new(plan: &Plan, effect_values: &[R], packs: usize) -> Self {
         let filters = plan.slots.iter().enumerate().filter_map(|(number, slot)| match slot.way {
-            Way::InputPath(i) => Some((number, i, Memory::of(plan, slot, knobs, packs))),
+            Way::InputPath(i) => Some((number, i, Memory::of(plan, slot, effect_values, packs))),
             _ => None,
         });
         Self { filters: filters.collect(), packs }
@@ -115,7 +117,7 @@ impl<R: EffectNumber> InputPaths<R> {
     pub fn advance(
         &mut self,
         plan: &Plan,
-        (knobs, gains): (&[R], Option<&[R]>),
+        (effect_values, gains): (&[R], Option<&[R]>),
         first: usize,
         u: &mut [Vec<R>; 3],
         h: f64,
@@ -130,7 +132,8 @@ impl<R: EffectNumber> InputPaths<R> {
             for pack in 0..self.packs {
                 let at = (first + pack) * nu + *i;
                 let three = [u[0][at], u[1][at], u[2][at]];
-                let own = &knobs[pack * plan.knobs + slot.knobs..][..slot.card.knobs.len()];
+                let own = &effect_values[pack * plan.effect_parameters + slot.first_parameter..]
+                    [..slot.card.parameters.len()];
                 let answer = match memory {
                     Memory::Lag(lag) => lag.advance(pack, own[0], h, three, held),
                     Memory::Delay(line) => line.advance(pack, own[0], h, three, held),
@@ -157,11 +160,11 @@ impl<R: EffectNumber> InputPaths<R> {
 }
 
 /// A value plus the law of a memoryless effect on its own path.
-pub fn curve<R: EffectNumber>(slot: &Slot, knobs: &[R], value: R) -> R {
+pub fn curve<R: EffectNumber>(slot: &Slot, effect_values: &[R], value: R) -> R {
     let mut w = [R::constant(0.0)];
     let block = EffectBlock {
         packs: 1,
-        knobs,
+        parameters: effect_values,
         coordinates: &[value],
         rate: &[R::constant(0.0)],
         has_rate: false,

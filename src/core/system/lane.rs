@@ -46,8 +46,8 @@ pub struct Lane {
     pub theta: Vec<f64>,
     /// Initial state of each segment; a missing segment starts like the one before.
     pub starts: Vec<Vec<f64>>,
-    /// Knobs of all slots.
-    pub knobs: Vec<f64>,
+    /// Parameters of the effects of all slots.
+    pub effect_values: Vec<f64>,
     /// Factor on each slot's w; empty means 1.
     pub gains: Vec<f64>,
     /// Wiring of each slot where it differs from the plan's; empty means nowhere.

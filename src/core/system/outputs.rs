@@ -25,7 +25,7 @@ pub struct OutputPaths<R> {
 }
 
 impl<R: EffectNumber> OutputPaths<R> {
-    pub fn new(plan: &Plan, knobs: &[R], packs: usize) -> Self {
+    pub fn new(plan: &Plan, effect_values: &[R], packs: usize) -> Self {
         let mut entries = vec![];
         let mut fine = false;
         for (number, slot) in plan.slots.iter().enumerate() {
@@ -35,7 +35,7 @@ impl<R: EffectNumber> OutputPaths<R> {
             };
             match &slot.way {
                 Way::OutputPath(output) => {
-                    let memory = Memory::of(plan, slot, knobs, packs);
+                    let memory = Memory::of(plan, slot, effect_values, packs);
                     fine |= matches!(memory, Memory::Lag(_) | Memory::Delay(_));
                     push(*output, None, memory);
                 }
@@ -82,7 +82,7 @@ impl<R: EffectNumber> OutputPaths<R> {
     pub fn advance(
         &mut self,
         plan: &Plan,
-        (knobs, gains): (&[R], Option<&[R]>),
+        (effect_values, gains): (&[R], Option<&[R]>),
         wirings: &[Wiring<R>],
         y: &mut [R],
         h: f64,
@@ -103,7 +103,8 @@ impl<R: EffectNumber> OutputPaths<R> {
                     continue;
                 }
                 let now = *value;
-                let own = &knobs[pack * plan.knobs + slot.knobs..][..slot.card.knobs.len()];
+                let own = &effect_values[pack * plan.effect_parameters + slot.first_parameter..]
+                    [..slot.card.parameters.len()];
                 *value = match &mut entry.memory {
                     Memory::None => curve(slot, own, now),
                     Memory::Play(play) => play.advance(pack, own[0], now),

@@ -72,17 +72,17 @@ impl Placed {
     /// Checks its values and places, as far as they do not depend on the model.
     pub(super) fn check(&self, index: usize, card: &EffectCard) -> Result<(), SystemError> {
         let effect = || self.effect.typetag_name().to_string();
-        for knob in &card.knobs {
+        for own in &card.parameters {
             // absent bounds are infinite and have no range
-            let ok = knob.value >= knob.min && knob.value <= knob.max || knob.value.is_infinite();
+            let ok = own.value >= own.min && own.value <= own.max || own.value.is_infinite();
             if !ok {
-                return Err(SystemError::KnobRange {
+                return Err(SystemError::EffectParameterRange {
                     index,
                     effect: effect(),
-                    knob: knob.name.to_string(),
-                    value: knob.value,
-                    min: knob.min,
-                    max: knob.max,
+                    parameter: own.name.to_string(),
+                    value: own.value,
+                    min: own.min,
+                    max: own.max,
                 });
             }
         }
@@ -95,15 +95,15 @@ impl Placed {
         let effect = || self.effect.typetag_name().to_string();
         let card = self.effect.card();
         let parameter = signals.parameters.iter().find(|p| p.name == self.into);
-        if let (Mechanism::Parameter, Some(p), Some(knob)) =
-            (card.mechanism, parameter, card.knobs.first())
-            && !(p.min..=p.max).contains(&knob.value)
+        if let (Mechanism::Parameter, Some(p), Some(own)) =
+            (card.mechanism, parameter, card.parameters.first())
+            && !(p.min..=p.max).contains(&own.value)
         {
-            return Err(SystemError::KnobRange {
+            return Err(SystemError::EffectParameterRange {
                 index,
                 effect: effect(),
-                knob: knob.name.to_string(),
-                value: knob.value,
+                parameter: own.name.to_string(),
+                value: own.value,
                 min: p.min,
                 max: p.max,
             });

@@ -42,8 +42,8 @@ pub struct Slot {
     pub effect: Box<dyn CandidateEffect>,
     pub card: EffectCard,
     pub way: Way,
-    /// Where its knobs start in the flat list.
-    pub knobs: usize,
+    /// Where its parameters start in the flat list.
+    pub first_parameter: usize,
     /// Where its states start in the flat list.
     pub states: usize,
 }
@@ -122,7 +122,7 @@ impl Base {
 pub struct Plan {
     pub base: Arc<Base>,
     pub slots: Vec<Slot>,
-    pub knobs: usize,
+    pub effect_parameters: usize,
     pub states: usize,
 }
 
@@ -135,7 +135,7 @@ impl std::ops::Deref for Plan {
 
 impl Plan {
     pub fn new(base: Arc<Base>, effects: &[Placed]) -> Result<Self, SystemError> {
-        let mut plan = Self { base, slots: vec![], knobs: 0, states: 0 };
+        let mut plan = Self { base, slots: vec![], effect_parameters: 0, states: 0 };
         for (index, placed) in effects.iter().enumerate() {
             plan.place(index, placed)?;
         }
@@ -157,12 +157,12 @@ impl Plan {
         let way = self.way(index, placed, &card)?;
         let slot = Slot {
             effect: placed.effect.clone(),
-            knobs: self.knobs,
+            first_parameter: self.effect_parameters,
             states: self.states,
             way,
             card,
         };
-        self.knobs += slot.card.knobs.len();
+        self.effect_parameters += slot.card.parameters.len();
         self.states += slot.card.states;
         self.slots.push(slot);
         Ok(())
@@ -266,8 +266,8 @@ impl Plan {
         }
     }
 
-    /// Present knob values of all slots.
-    pub fn knob_values(&self) -> Vec<f64> {
+    /// Present values of the parameters of the effects in all slots.
+    pub fn effect_values(&self) -> Vec<f64> {
         self.slots.iter().flat_map(|slot| slot.card.values()).collect()
     }
 }

@@ -47,7 +47,7 @@ pub struct Recorded {
     pub remembered: Vec<Remembered>,
     /// Term of each of those at the end of the step.
     pub next: Vec<Node>,
-    /// What may be changed: the model's parameters, then the effects' knobs.
+    /// What may be changed: the model's parameters, then those of the effects.
     pub parameters: Vec<RecordedParameter>,
     /// Names and values of what is part of the terms as a constant.
     pub fixed: Vec<RecordedParameter>,
@@ -70,7 +70,11 @@ fn fits_in_a_line(
     card: &crate::effect::EffectCard,
     step: f64,
 ) -> Result<(), SystemError> {
-    let Some(delay) = card.knobs.iter().find(|knob| !(knob.value / step <= MOST_DELAYED)) else {
+    let Some(delay) = card
+        .parameters
+        .iter()
+        .find(|effect_parameter| !(effect_parameter.value / step <= MOST_DELAYED))
+    else {
         return Ok(());
     };
     Err(SystemError::Value {
@@ -144,19 +148,24 @@ impl System {
             if card.mechanism == crate::effect::Mechanism::Delay {
                 fits_in_a_line(number, placed, &card, plan.step())?;
             }
-            for knob in &card.knobs {
+            for effect_parameter in &card.parameters {
                 let name = format!(
                     "effects.{}.{}.{}",
                     number + 1,
                     placed.effect.typetag_name(),
-                    knob.name
+                    effect_parameter.name
                 );
-                let entry = RecordedParameter { name, unit: String::new(), value: knob.value };
-                if knob.value.is_finite() { parameters.push(entry) } else { fixed.push(entry) }
+                let entry =
+                    RecordedParameter { name, unit: String::new(), value: effect_parameter.value };
+                if effect_parameter.value.is_finite() {
+                    parameters.push(entry)
+                } else {
+                    fixed.push(entry)
+                }
             }
-            at += card.knobs.len();
+            at += card.parameters.len();
         }
-        debug_assert_eq!(at, plan.knobs);
+        debug_assert_eq!(at, plan.effect_parameters);
         let recorded = engine::record(self.model.as_ref(), &plan, &open);
         Ok(Recorded {
             inputs: signals.inputs.clone(),

@@ -98,7 +98,7 @@ pub struct Wiring<R> {
     gains: Option<Vec<R>>,
     play: Option<PlayState<R>>,
     packs: usize,
-    knobs: Vec<R>,
+    effect_values: Vec<R>,
     coordinates: Vec<R>,
     rate_in: Vec<R>,
     state: Vec<R>,
@@ -113,7 +113,7 @@ impl<R: EffectNumber> Wiring<R> {
         number: usize,
         lanes: &[Lane],
         packs: usize,
-        knobs: &[R],
+        effect_values: &[R],
         gains: Option<&[R]>,
     ) -> Option<Self> {
         let slot = &plan.slots[number];
@@ -134,7 +134,7 @@ impl<R: EffectNumber> Wiring<R> {
         let mut enters: Vec<usize> = targets.iter().map(|(entry, _)| *entry).collect();
         enters.extend(routes.iter().flatten().map(|way| way.route.target));
         let into_output = |&e: &usize| matches!(plan.targets.entries[e].1, Origin::Output(_));
-        let (n, m) = (slot.card.knobs.len(), slot.card.states);
+        let (n, m) = (slot.card.parameters.len(), slot.card.states);
         let own = |all: &[R], width: usize, from: usize, n: usize| {
             (0..packs).flat_map(|p| all[p * width + from..][..n].to_vec()).collect::<Vec<_>>()
         };
@@ -149,7 +149,7 @@ impl<R: EffectNumber> Wiring<R> {
             gains: gains.map(|gains| own(gains, plan.slots.len(), number, 1)),
             play: (slot.card.mechanism == Mechanism::Play).then(|| PlayState::new(packs)),
             packs,
-            knobs: own(knobs, plan.knobs, slot.knobs, n),
+            effect_values: own(effect_values, plan.effect_parameters, slot.first_parameter, n),
             coordinates: zeros(sources.len()),
             rate_in: zeros(1),
             state: zeros(m),
@@ -229,12 +229,12 @@ impl<R: EffectNumber> Wiring<R> {
         if let Some(play) = &self.play {
             for pack in 0..self.packs {
                 let z = self.coordinates[pack * seen];
-                self.w[pack] = play.trial(pack, self.knobs[pack], z) - z;
+                self.w[pack] = play.trial(pack, self.effect_values[pack], z) - z;
             }
         } else {
             let block = EffectBlock {
                 packs: self.packs,
-                knobs: &self.knobs,
+                parameters: &self.effect_values,
                 coordinates: &self.coordinates,
                 rate: &self.rate_in,
                 has_rate: self.rate.is_some(),
@@ -314,11 +314,12 @@ impl<R: EffectNumber> Wiring<R> {
         value
     }
 
-    /// Puts other numbers in the place of its knobs, pack by pack of all slots.
-    pub fn take_knobs(&mut self, plan: &Plan, knobs: &[R]) {
-        let (from, n) = (plan.slots[self.slot].knobs, plan.slots[self.slot].card.knobs.len());
-        for (pack, own) in self.knobs.chunks_exact_mut(n.max(1)).enumerate() {
-            own.copy_from_slice(&knobs[pack * plan.knobs + from..][..n]);
+    /// Puts other numbers in the place of its parameters, pack by pack of all slots.
+    pub fn take_effect_values(&mut self, plan: &Plan, effect_values: &[R]) {
+        let (from, n) =
+            (plan.slots[self.slot].first_parameter, plan.slots[self.slot].card.parameters.len());
+        for (pack, own) in self.effect_values.chunks_exact_mut(n.max(1)).enumerate() {
+            own.copy_from_slice(&effect_values[pack * plan.effect_parameters + from..][..n]);
         }
     }
 
@@ -332,7 +333,7 @@ impl<R: EffectNumber> Wiring<R> {
         let seen = self.sources.len();
         if let Some(play) = &mut self.play {
             for pack in 0..self.packs {
-                play.advance(pack, self.knobs[pack], self.coordinates[pack * seen]);
+                play.advance(pack, self.effect_values[pack], self.coordinates[pack * seen]);
             }
             play.start();
         }

@@ -9,7 +9,7 @@ pub(crate) const NUMBER: f64 = 4.0;
 /// How a candidate is wired into a simulation.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Wire {
-    /// Changes a parameter by its first knob.
+    /// Changes a parameter of the model by its own first parameter.
     Parameter(usize),
     /// Makes a parameter drift.
     Drift(usize),
@@ -47,11 +47,11 @@ pub(crate) struct Candidate {
     pub preference: Preference,
     /// The place alone, for ties.
     pub place: Preference,
-    /// Knobs that the effect is proportional to; empty where it is blended in instead.
+    /// Parameters that the effect is proportional to; empty where it is blended in instead.
     pub linear: Vec<usize>,
-    /// Shape knobs that are refined.
+    /// Shape parameters that are refined.
     pub refine: Vec<usize>,
-    /// Grid of starting values of all knobs.
+    /// Grid of starting values of all parameters.
     pub starts: Vec<Vec<f64>>,
     pub min: Vec<f64>,
     pub max: Vec<f64>,
@@ -147,20 +147,20 @@ impl Candidate {
         (self.preference, self.unknowns(), self.card.rank, self.place)
     }
 
-    /// Knobs with these coefficients, as far as their bounds let them be.
+    /// Parameters with these coefficients, as far as their bounds let them be.
     pub fn sized(&self, start: &[f64], coefficients: &[f64]) -> Vec<f64> {
-        let mut knobs = start.to_vec();
+        let mut parameters = start.to_vec();
         for (&i, &value) in self.linear.iter().zip(coefficients) {
             let (min, max) = self.bounds(i);
-            knobs[i] = value.clamp(min, max.max(min));
+            parameters[i] = value.clamp(min, max.max(min));
         }
-        knobs
+        parameters
     }
 
-    /// Knobs within their ranges, the sign kept, and friction no steeper than `step` (s)
+    /// Parameters within their ranges, the sign kept, and friction no steeper than `step` (s)
     /// lets the integrator follow.
-    pub fn clipped(&self, knobs: &[f64], step: f64) -> Vec<f64> {
-        let mut clipped = knobs.to_vec();
+    pub fn clipped(&self, parameters: &[f64], step: f64) -> Vec<f64> {
+        let mut clipped = parameters.to_vec();
         for &i in &self.refine {
             if clipped[i].is_finite() {
                 clipped[i] = clipped[i].clamp(self.min[i], self.max[i].max(self.min[i]));
@@ -179,12 +179,12 @@ impl Candidate {
         clipped
     }
 
-    /// The entry of a model file with these knob values. Parameters have none.
-    pub fn placed(&self, knobs: &[f64]) -> Option<Placed> {
+    /// The entry of a model file with these parameter values. Parameters have none.
+    pub fn placed(&self, parameters: &[f64]) -> Option<Placed> {
         if matches!(self.wire, Wire::Parameter(_)) {
             return None;
         }
-        let effect = self.shape.with_values(knobs).ok()?;
+        let effect = self.shape.with_values(parameters).ok()?;
         Some(Placed {
             into: self.into.clone(),
             of: self.of.clone(),
@@ -194,17 +194,17 @@ impl Candidate {
         })
     }
 
-    /// Bounds of a knob in a refit, from its role and the sign rule.
-    pub fn bounds(&self, knob: usize) -> (f64, f64) {
-        if self.card.knobs[knob].role == Role::Coefficient {
-            let (min, max) = (self.min[knob], self.max[knob]);
-            let first = self.linear.first() == Some(&knob);
+    /// Bounds of a parameter in a refit, from its role and the sign rule.
+    pub fn bounds(&self, parameter: usize) -> (f64, f64) {
+        if self.card.parameters[parameter].role == Role::Coefficient {
+            let (min, max) = (self.min[parameter], self.max[parameter]);
+            let first = self.linear.first() == Some(&parameter);
             return match self.sign {
                 s if first && s > 0.0 => (min.max(0.0), max),
                 s if first && s < 0.0 => (min, max.min(0.0)),
                 _ => (min, max),
             };
         }
-        (self.min[knob], self.max[knob].max(self.min[knob]))
+        (self.min[parameter], self.max[parameter].max(self.min[parameter]))
     }
 }

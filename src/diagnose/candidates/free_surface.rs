@@ -22,10 +22,10 @@ pub(crate) const UNITS: usize = 8;
 /// Range of the weights inside it: beyond, a hidden unit is a step.
 const STEEPEST: f64 = 12.0;
 /// Orders of the polynomials of one coordinate, and of their products.
-const ALONE: [usize; 4] = [1, 2, 3, 4];
+const SINGLE: [usize; 4] = [1, 2, 3, 4];
 const PRODUCTS: [[usize; 2]; 6] = [[1, 1], [2, 1], [1, 2], [2, 2], [3, 1], [1, 3]];
 /// Pairs of coordinates whose products are simulated together.
-const TOGETHER: usize = 16;
+const PAIRS_AT_ONCE: usize = 16;
 /// Pairs of coordinates per channel at most; the first ones, in the model's order.
 const PAIRS: usize = 66;
 /// What one more coordinate must predict to be worth it.
@@ -69,10 +69,10 @@ impl Drawing<'_, '_> {
         for group in &groups {
             let target = group[0].0;
             let constant = self.columns(&at, target, &moving[..moving.len().min(1)], &[vec![0]]);
-            let alone: Vec<Vec<Vec<f64>>> = moving
+            let single: Vec<Vec<Vec<f64>>> = moving
                 .iter()
                 .map(|one| {
-                    let orders: Vec<Vec<usize>> = ALONE.iter().map(|&o| vec![o]).collect();
+                    let orders: Vec<Vec<usize>> = SINGLE.iter().map(|&o| vec![o]).collect();
                     self.columns(&at, target, std::slice::from_ref(one), &orders)
                 })
                 .collect();
@@ -81,21 +81,21 @@ impl Drawing<'_, '_> {
                 .take(PAIRS)
                 .collect();
             let mut laws: Vec<(Vec<usize>, Vec<Vec<usize>>, Smoothed)> = vec![];
-            for (i, own) in alone.iter().enumerate() {
+            for (i, own) in single.iter().enumerate() {
                 let orders: Vec<Vec<usize>> =
-                    std::iter::once(0).chain(ALONE).map(|o| vec![o]).collect();
+                    std::iter::once(0).chain(SINGLE).map(|o| vec![o]).collect();
                 let columns = [&constant[..], own].concat();
                 laws.extend(self.fit(&columns, &left, &orders).map(|fit| (vec![i], orders, fit)));
             }
-            for pairs in pairs.chunks(TOGETHER) {
+            for pairs in pairs.chunks(PAIRS_AT_ONCE) {
                 for &(a, b) in pairs {
                     let products: Vec<Vec<usize>> = PRODUCTS.iter().map(|p| p.to_vec()).collect();
                     let both = [a, b].map(|i| Moving { ..moving[i] });
                     let mixed = self.columns(&at, target, &both, &products);
-                    let columns = [&constant[..], &alone[a], &alone[b], &mixed].concat();
+                    let columns = [&constant[..], &single[a], &single[b], &mixed].concat();
                     let mut orders = vec![vec![0, 0]];
-                    orders.extend(ALONE.map(|o| vec![o, 0]));
-                    orders.extend(ALONE.map(|o| vec![0, o]));
+                    orders.extend(SINGLE.map(|o| vec![o, 0]));
+                    orders.extend(SINGLE.map(|o| vec![0, o]));
                     orders.extend(products);
                     let fit = self.fit(&columns, &left, &orders);
                     laws.extend(fit.map(|fit| (vec![a, b], orders, fit)));
@@ -147,13 +147,15 @@ impl Drawing<'_, '_> {
         let silent = || vec![vec![0.0; at.now.len()]; orders.len()];
         let Some(job) = self.problem.job(at.model, Grain::Coarse) else { return silent() };
         let mut placed: Vec<Placed> =
-            at.model.added.iter().filter_map(|a| a.cause.placed(&a.knobs)).collect();
+            at.model.added.iter().filter_map(|a| a.cause.placed(&a.parameters)).collect();
         placed.push(tensor);
         let Some(plan) = self.problem.plan_anew(Grain::Coarse, &placed) else { return silent() };
         let jobs: Vec<Job> = (0..orders.len())
             .map(|i| {
                 let mut job = Job { plan: plan.clone(), lane: job.lane.clone() };
-                job.lane.knobs.extend((0..orders.len()).map(|j| if i == j { step } else { 0.0 }));
+                job.lane
+                    .effect_values
+                    .extend((0..orders.len()).map(|j| if i == j { step } else { 0.0 }));
                 job
             })
             .collect();

@@ -1,4 +1,4 @@
-//! Nonlinear regression of a law on a curve: w(z) = f(z; knobs) + error, without a simulation in it.
+//! Nonlinear regression of a law on a curve: w(z) = f(z; parameters) + error, without a simulation in it.
 //!
 //! The sum of squares has several hills, one start each; coefficients are solved for (Golub and Pereyra,
 //! SIAM Journal on Numerical Analysis 10, 1973).
@@ -16,7 +16,7 @@ pub(crate) fn thinned(z: &[f64]) -> Vec<f64> {
     (0..count).map(|i| z[i * z.len() / count]).collect()
 }
 
-/// Where a law meets a curve best, coefficients within their signs: knobs and the sum of squares that is
+/// Where a law meets a curve best, coefficients within their signs: parameters and the sum of squares that is
 /// left, best first; none of a law with a memory of its own, which is no curve.
 pub(crate) fn hills(cause: &Candidate, z: &[f64], w: &[f64]) -> Vec<(Vec<f64>, f64)> {
     if !cause.is_curve() {
@@ -27,7 +27,7 @@ pub(crate) fn hills(cause: &Candidate, z: &[f64], w: &[f64]) -> Vec<(Vec<f64>, f
         true => cause.bounds(i),
         false => (cause.starts[0][i], cause.starts[0][i]),
     };
-    let (lower, upper) = (0..cause.card.knobs.len()).map(range).unzip();
+    let (lower, upper) = (0..cause.card.parameters.len()).map(range).unzip();
     regressions(cause.shape.as_ref(), &cause.starts, &Bounds { lower, upper }, (z, w))
 }
 
@@ -60,7 +60,7 @@ mod tests {
         // a slope that may be anything makes a straight line of a gap beyond the range
         assert!(hills(&free, &z, &w)[0].0[0] < 0.1);
         let path = Candidate { linear: vec![], ..free };
-        assert!(hills(&path, &z, &w).iter().all(|(knobs, _)| knobs[0] == 1.0));
+        assert!(hills(&path, &z, &w).iter().all(|(parameters, _)| parameters[0] == 1.0));
     }
 
     #[test]

@@ -80,8 +80,8 @@ pub(crate) fn library(
                 builder.channel_paths(name, shape.as_ref(), &declared, group, &sources);
             }
         }
-        if declared.places.beside {
-            builder.beside(name, shape.as_ref(), &declared);
+        if declared.places.feedthrough {
+            builder.feedthrough(name, shape.as_ref(), &declared);
         }
     }
     builder.found.into_iter().map(Arc::new).collect()
@@ -153,19 +153,19 @@ impl Builder<'_, '_> {
         let source = spot.source.unwrap_or(time);
         let view = self.nominal.view(source, source == time, spot.own_path, &self.lines);
         let search = shape.search(&view);
-        let fixed = |knob: &str| {
-            let own = card.own_path.iter().find(|(name, _)| *name == knob);
+        let fixed = |parameter: &str| {
+            let own = card.own_path.iter().find(|(name, _)| *name == parameter);
             own.filter(|_| spot.own_path).map(|(_, value)| *value)
         };
         let mut patterns: Vec<(Vec<i64>, Vec<Vec<f64>>)> = vec![];
         for mut start in search.starts {
-            for (value, knob) in start.iter_mut().zip(&card.knobs) {
-                *value = fixed(&knob.name).unwrap_or(*value);
+            for (value, parameter) in start.iter_mut().zip(&card.parameters) {
+                *value = fixed(&parameter.name).unwrap_or(*value);
             }
             let pattern: Vec<i64> = start
                 .iter()
-                .zip(&card.knobs)
-                .map(|(value, knob)| match knob.role {
+                .zip(&card.parameters)
+                .map(|(value, parameter)| match parameter.role {
                     _ if value.is_infinite() => i64::MAX,
                     Role::Choice => value.round() as i64,
                     _ => 0,
@@ -188,14 +188,14 @@ impl Builder<'_, '_> {
         let simple = card.properties.of_an_instrument;
         let preference = self.preference(spot.target);
         for (_, starts) in patterns {
-            let role = |i: &usize| card.knobs[*i].role;
-            let free = |i: &usize| fixed(&card.knobs[*i].name).is_none();
+            let role = |i: &usize| card.parameters[*i].role;
+            let free = |i: &usize| fixed(&card.parameters[*i].name).is_none();
             let finite = |i: &usize| starts[0][*i].is_finite();
-            let knobs = 0..card.knobs.len();
+            let parameters = 0..card.parameters.len();
             let linear: Vec<usize> =
-                knobs.clone().filter(|i| role(i) == Role::Coefficient && free(i)).collect();
+                parameters.clone().filter(|i| role(i) == Role::Coefficient && free(i)).collect();
             let refine: Vec<usize> =
-                knobs.filter(|i| role(i) == Role::Shape && free(i) && finite(i)).collect();
+                parameters.filter(|i| role(i) == Role::Shape && free(i) && finite(i)).collect();
             let size = self.shape_size(shape, card, &starts[0], &linear, source, &view);
             let natural = self.nominal.natural[spot.target];
             let on_path = matches!(target_origin, Origin::Input(_) | Origin::Output(_));
@@ -274,9 +274,9 @@ impl Builder<'_, '_> {
             let rate = card.position(card.properties.resonance).map_or(1.0, |i| start[i]);
             return fallback * rate;
         }
-        let mut knobs = start.to_vec();
-        knobs[first] = 1.0;
-        let size = crate::statistics::rms(&curve(shape, &knobs, self.nominal.series(source)));
+        let mut parameters = start.to_vec();
+        parameters[first] = 1.0;
+        let size = crate::statistics::rms(&curve(shape, &parameters, self.nominal.series(source)));
         if size > 0.0 && size.is_finite() { size } else { fallback }
     }
 }

@@ -19,14 +19,15 @@ impl Candidate {
 
     /// What sentences about it need; `nominal` is the value of a parameter in the model.
     pub fn wording(&self, nominal: Option<f64>) -> Wording {
-        let first = self.linear.first().filter(|&&i| self.card.knobs[i].role == Role::Coefficient);
+        let first =
+            self.linear.first().filter(|&&i| self.card.parameters[i].role == Role::Coefficient);
         Wording {
             title: self.shape.title(&self.named),
             senses: self.shape.senses(&self.named),
             push: self.push,
             one_sign: self.sign != 0.0,
             size: self.card.properties.size,
-            first: first.map(|&i| self.card.knobs[i].name.to_string()),
+            first: first.map(|&i| self.card.parameters[i].name.to_string()),
             site: self.site(),
             is_constant: self.card.needs == Needs::Nothing && self.card.mechanism == Mechanism::Law,
             is_friction: self.card.properties.is_friction && !self.named.bare,

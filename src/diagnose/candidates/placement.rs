@@ -23,7 +23,7 @@ impl Builder<'_, '_> {
             }
             let value = model.theta[p];
             let mut card = card.clone();
-            card.knobs[0].value = 0.0;
+            card.parameters[0].value = 0.0;
             let changes = card.mechanism == Mechanism::Parameter;
             // a change of the value, kept inside the parameter's own bounds and of its sign
             let floor = if value > 0.0 { parameter.min.max(0.05 * value) } else { parameter.min };
@@ -268,7 +268,7 @@ impl Builder<'_, '_> {
     }
 
     /// Beside the model: into an output, of an input.
-    pub(crate) fn beside(
+    pub(crate) fn feedthrough(
         &mut self,
         name: &'static str,
         shape: &dyn CandidateEffect,

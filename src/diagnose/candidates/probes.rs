@@ -23,17 +23,17 @@ pub(crate) struct Probe {
     pub(crate) failed: bool,
 }
 
-/// The simulation of a model with one more cause at given knobs, wired by the lane so that
+/// The simulation of a model with one more cause at given parameters, wired by the lane so that
 /// candidates of one kind share a plan.
 pub(crate) fn with_candidate(
     problem: &Problem<'_>,
     model: &Model,
     cause: &Arc<Candidate>,
-    knobs: &[f64],
+    parameters: &[f64],
     blend: f64,
     grain: Grain,
 ) -> Option<Job> {
-    let mut job = problem.job(&model.with(cause, knobs.to_vec()), grain)?;
+    let mut job = problem.job(&model.with(cause, parameters.to_vec()), grain)?;
     if blend != 1.0 {
         let slots = job.plan.slots.len();
         let mut gains = vec![1.0; slots];
@@ -53,12 +53,18 @@ pub(crate) struct Sharing<'a, 'b> {
 }
 
 impl Sharing<'_, '_> {
-    pub(crate) fn job(&mut self, cause: &Arc<Candidate>, knobs: &[f64], blend: f64) -> Option<Job> {
+    pub(crate) fn job(
+        &mut self,
+        cause: &Arc<Candidate>,
+        parameters: &[f64],
+        blend: f64,
+    ) -> Option<Job> {
         let (Wire::Stage(route), true) = (&cause.wire, cause.also_into.is_empty()) else {
-            return with_candidate(self.problem, self.model, cause, knobs, blend, self.grain);
+            return with_candidate(self.problem, self.model, cause, parameters, blend, self.grain);
         };
         // same effect, same absent bounds, same need of a rate: the same compiled slot
-        let absent: String = knobs.iter().map(|v| if v.is_finite() { 'f' } else { 'i' }).collect();
+        let absent: String =
+            parameters.iter().map(|v| if v.is_finite() { 'f' } else { 'i' }).collect();
         let kind = format!("{}{absent}{}", cause.effect, route.rate.1 != 0.0);
         let first = match self.kinds.iter().find(|(name, _)| *name == kind) {
             Some((_, first)) => first.clone(),
@@ -67,13 +73,13 @@ impl Sharing<'_, '_> {
                 cause.clone()
             }
         };
-        let clipped = cause.clipped(knobs, self.problem.step(self.grain));
-        // the first one's sign rule must not clip this one's knobs
+        let clipped = cause.clipped(parameters, self.problem.step(self.grain));
+        // the first one's sign rule must not clip this one's parameters
         let mut job =
             with_candidate(self.problem, self.model, &first, &first.starts[0], blend, self.grain)?;
         let own = clipped.len();
-        let at = job.lane.knobs.len() - own;
-        job.lane.knobs[at..].copy_from_slice(&clipped);
+        let at = job.lane.effect_values.len() - own;
+        job.lane.effect_values[at..].copy_from_slice(&clipped);
         let mut routes = vec![None; job.plan.slots.len()];
         *routes.last_mut()? = Some(*route);
         job.lane.routes = routes;
@@ -84,8 +90,8 @@ impl Sharing<'_, '_> {
 /// Largest size that a probe of this sign may have.
 pub(crate) fn limit(cause: &Candidate, which: usize, sign: f64) -> f64 {
     match cause.linear.get(which) {
-        Some(&knob) => {
-            let (min, max) = cause.bounds(knob);
+        Some(&parameter) => {
+            let (min, max) = cause.bounds(parameter);
             if sign > 0.0 { max } else { min.abs() }
         }
         None => 1.0,
@@ -113,15 +119,15 @@ pub(crate) fn steer(
             for &i in chunk {
                 let probe = &probes[i];
                 let cause = &candidates[probe.candidate];
-                let mut knobs = cause.starts[probe.start].clone();
+                let mut parameters = cause.starts[probe.start].clone();
                 let blend = match cause.linear.get(probe.which) {
-                    Some(&knob) => {
-                        knobs[knob] = probe.size;
+                    Some(&parameter) => {
+                        parameters[parameter] = probe.size;
                         1.0
                     }
                     None => probe.size.abs().min(1.0),
                 };
-                match sharing.job(cause, &knobs, blend) {
+                match sharing.job(cause, &parameters, blend) {
                     Some(job) => {
                         jobs.push(job);
                         of.push(i);

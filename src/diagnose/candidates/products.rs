@@ -1,6 +1,8 @@
 //! Products of polynomials of one or two coordinates: what learned laws are looked for with.
 
-use crate::effect::{CandidateEffect, Effect, EffectCard, Felt, Knob, Named, Places, UnitRule};
+use crate::effect::{
+    Arguments, CandidateEffect, Effect, EffectCard, EffectParameter, Named, Places, UnitRule,
+};
 use crate::real::Real;
 use serde::{Deserialize, Serialize};
 
@@ -25,9 +27,10 @@ pub(crate) struct Tensor {
 impl Effect for Tensor {
     fn card(&self) -> EffectCard {
         let values = self.values.iter().enumerate();
-        let knob =
-            |(i, &v): (usize, &f64)| Knob::coefficient(format!("values.{i}"), v, UnitRule::Channel);
-        EffectCard::law(values.map(knob).collect()).places(Places::default())
+        let parameter = |(i, &v): (usize, &f64)| {
+            EffectParameter::coefficient(format!("values.{i}"), v, UnitRule::Channel)
+        };
+        EffectCard::law(values.map(parameter).collect()).places(Places::default())
     }
 
     fn title(&self, _: &Named) -> String {
@@ -35,7 +38,7 @@ impl Effect for Tensor {
     }
 
     #[inline(always)]
-    fn law<R: Real>(&self, at: &Felt<R>, _: &mut [R]) -> R {
+    fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
         let one = R::constant(1.0);
         let mut powers = [[one; ORDERS]; 2];
         for ((powers, z), i) in powers.iter_mut().zip(at.coordinates).zip(0..) {
@@ -49,7 +52,7 @@ impl Effect for Tensor {
             }
         }
         let mut w = R::constant(0.0);
-        for (&value, orders) in at.knobs.iter().zip(&self.orders) {
+        for (&value, orders) in at.parameters.iter().zip(&self.orders) {
             let mut term = value;
             for (powers, &order) in powers.iter().zip(orders) {
                 term *= powers[order.min(ORDERS - 1)];

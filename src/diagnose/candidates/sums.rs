@@ -26,8 +26,8 @@ impl Model {
     pub fn sum(&self, own: &[usize], step: f64, z: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; z.len()];
         for added in own.iter().map(|&i| &self.added[i]) {
-            let knobs = added.cause.clipped(&added.knobs, step);
-            let law = curve(added.cause.shape.as_ref(), &knobs, z);
+            let parameters = added.cause.clipped(&added.parameters, step);
+            let law = curve(added.cause.shape.as_ref(), &parameters, z);
             sum.iter_mut().zip(law).for_each(|(sum, law)| *sum += law);
         }
         sum
@@ -66,9 +66,9 @@ mod tests {
     use crate::search::fixture::fit_of;
 
     #[test]
-    fn laws_of_one_place_stand_together() {
+    fn laws_of_one_place_are_one_cause() {
         let mut model = fit_of(&["a", "b", "a", "c"], vec![1.0; 9]).model;
-        model.added.iter_mut().for_each(|added| added.knobs[0] = 3.0);
+        model.added.iter_mut().for_each(|added| added.parameters[0] = 3.0);
         assert_eq!(model.places(), vec![vec![0, 2], vec![1], vec![3]]);
         let z = [-1.0, 0.5, 2.0];
         let one = model.sum(&[0], 1.0, &z);

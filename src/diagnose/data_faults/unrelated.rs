@@ -90,13 +90,13 @@ fn joined(system: &System, records: &[Record], o: usize) -> Result<Option<Joined
         let count = run.init_samples(Init::Forgotten);
         let simulated = run.track(run.starts(0)).y.swap_remove(o);
         let first = all.y.len();
-        let told =
+        let usable =
             |k: usize| run.drive.segments.iter().any(|s| (s.start + count..s.end).contains(&k));
-        all.y.extend(y.iter().enumerate().map(|(k, v)| if told(k) { *v } else { f64::NAN }));
+        all.y.extend(y.iter().enumerate().map(|(k, v)| if usable(k) { *v } else { f64::NAN }));
         all.simulated.extend(simulated);
-        let beside = run.measured.iter().enumerate().filter(|(other, _)| *other != o);
-        let beside = beside.filter_map(|(_, other)| other.as_ref());
-        for (i, column) in run.drive.inputs.iter().chain(beside).enumerate() {
+        let others = run.measured.iter().enumerate().filter(|(other, _)| *other != o);
+        let others = others.filter_map(|(_, other)| other.as_ref());
+        for (i, column) in run.drive.inputs.iter().chain(others).enumerate() {
             if all.others.len() <= i {
                 all.others.push(vec![0.0; first]);
             }

@@ -2,7 +2,7 @@
 //!
 //! ln p(M) = -sum over causes (MORE + ln(choices) + PER_NUMBER (numbers - 1)) - ALL_PARAMETERS where all
 //! parameters may move: spike and slab (Mitchell and Beauchamp, JASA 83, 1988). The first law at a place
-//! is chosen among all names of the library, a further one of the same place among its laws. Coefficients are log-uniform over SIZES, shape knobs uniform over their range, parameters and
+//! is chosen among all names of the library, a further one of the same place among its laws. Coefficients are log-uniform over SIZES, shape parameters uniform over their range, parameters of the model and
 //! initial states Gaussian.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -66,7 +66,7 @@ fn of_cause(cause: &Candidate, choice: f64) -> f64 {
 pub(crate) fn width(problem: &Problem<'_>, nuisance: &Nuisance, model: &Model, key: Key) -> f64 {
     let unknown = nuisance.unknown(problem, model, key);
     let flat = |range: f64| range / (2.0 * PI).sqrt();
-    let Key::Knob(a, i) = key else {
+    let Key::EffectParameter(a, i) = key else {
         return unknown.prior.map_or(unknown.scale * SIZES, |(_, deviation)| deviation);
     };
     if let Some((_, deviation)) = unknown.prior {
@@ -76,7 +76,7 @@ pub(crate) fn width(problem: &Problem<'_>, nuisance: &Nuisance, model: &Model, k
     let value = get(model, key);
     if cause.linear.contains(&i) {
         // coefficients of one law share a scale
-        let own = cause.linear.iter().map(|&j| get(model, Key::Knob(a, j)).abs());
+        let own = cause.linear.iter().map(|&j| get(model, Key::EffectParameter(a, j)).abs());
         return flat((own.fold(value.abs(), f64::max) * SIZES).max(1e-12));
     }
     let (min, max) = cause.bounds(i);

@@ -106,7 +106,7 @@ impl Context<'_, '_> {
     /// One law with its numbers and what sentences need.
     fn part(&self, chosen: &Finished, index: usize) -> LawPart {
         let model = &chosen.fitted.model;
-        let Added { cause, knobs } = &model.added[index];
+        let Added { cause, parameters } = &model.added[index];
         // the weights of a learned law stand in the extended model; no number of them says anything
         let values = match cause.is_learned() {
             true => vec![],
@@ -120,7 +120,7 @@ impl Context<'_, '_> {
         };
         let shape = cause.is_drawn().then(|| match cause.is_learned() {
             true => self.found_law(model, index),
-            false => self.found_curve(cause, knobs),
+            false => self.found_curve(cause, parameters),
         });
         let total = self.total(chosen, index);
         let wording = Wording { shape, total, ..cause.wording(nominal) };

@@ -69,7 +69,7 @@ impl Reading {
 /// Reads a learned law of a model by what the record visits.
 pub(crate) fn read(problem: &Problem<'_>, model: &Model, index: usize) -> Option<Reading> {
     let added = &model.added[index];
-    let law = network(added.cause.placed(&added.knobs)?.effect.as_ref())?;
+    let law = network(added.cause.placed(&added.parameters)?.effect.as_ref())?;
     let job = problem.job(model, Grain::Coarse)?;
     let track = problem.system.run_seen(&job.plan, &problem.drive, &job.lane);
     let sources = &problem.base.sources;
@@ -83,7 +83,7 @@ pub(crate) fn read(problem: &Problem<'_>, model: &Model, index: usize) -> Option
         .collect();
     let points: Vec<Vec<f64>> =
         used.iter().map(|&k| entries.iter().map(|&e| track.seen[e][k]).collect()).collect();
-    let w: Vec<f64> = points.iter().map(|z| value(&law, &added.knobs, z)).collect();
+    let w: Vec<f64> = points.iter().map(|z| value(&law, &added.parameters, z)).collect();
     let most = w.iter().fold(0.0_f64, |m, w| m.max(w.abs()));
     if !(most > 0.0 && most.is_finite()) {
         return None;
@@ -217,14 +217,15 @@ fn slices(problem: &Problem<'_>, nominal: &Nominal, model: &Model) -> Vec<Curve>
     let places = model.places();
     let picture = |(index, added): (usize, &Added)| {
         let [of, also] = added.cause.coordinates()[..] else { return None };
-        let law = network(added.cause.placed(&added.knobs)?.effect.as_ref())?;
+        let law = network(added.cause.placed(&added.parameters)?.effect.as_ref())?;
         let ((view, _), (other, source)) = (view(of)?, view(also)?);
         let (low, high) = (view.quantile(0.002), view.quantile(0.998));
         let unit = &problem.base.sources.entries[source].0.unit;
         let at = |i: usize| low + (high - low) * i as f64 / (POINTS - 1) as f64;
         let slice = |share: f64| {
             let held = other.quantile(share);
-            let points = (0..POINTS).map(|i| (at(i), value(&law, &added.knobs, &[at(i), held])));
+            let points =
+                (0..POINTS).map(|i| (at(i), value(&law, &added.parameters, &[at(i), held])));
             let words = format!("where {also} is {} {unit}", number(held, None));
             (words.trim_end().to_string(), points.collect())
         };

@@ -50,7 +50,7 @@ impl Context<'_, '_> {
         }
         let mut base = from.start.clone();
         base.added = chosen.fitted.model.added[..chosen.fitted.model.known()].to_vec();
-        let models: Vec<Model> = self.telling(&base, from.fixed)?;
+        let models: Vec<Model> = self.informative(&base, from.fixed)?;
         let nuisance = Nuisance::new(self.problem, self.nominal);
         let noise = Stretches::new(self.problem, Part::All);
         let worth = |residual: &[f64], numbers: usize| {
@@ -60,30 +60,30 @@ impl Context<'_, '_> {
         let numbers: usize = chosen.fitted.model.added.iter().map(|a| a.cause.unknowns()).sum();
         let own = worth(&chosen.fitted.residuals, numbers + chosen.moved.len());
         let fitted = refit(self.problem, &nuisance, &models, Refit::last()).into_iter().flatten();
-        let mut told: Vec<(f64, Fitted)> =
+        let mut models: Vec<(f64, Fitted)> =
             fitted.map(|fitted| (worth(&fitted.residuals, 1) - own, fitted)).collect();
-        told.retain(|(odds, _)| *odds > LOOK_ALIKE.ln());
-        told.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let best = told.first()?.0;
-        told.retain(|(odds, _)| *odds > best - SAME);
+        models.retain(|(odds, _)| *odds > LOOK_ALIKE.ln());
+        models.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let best = models.first()?.0;
+        models.retain(|(odds, _)| *odds > best - SAME);
         if let ([only], true) = (causes, named == 1) {
             let share = only.error_removed;
             only.indistinguishable
-                .extend(told.iter().map(|(_, fitted)| alternative(fitted, share)));
+                .extend(models.iter().map(|(_, fitted)| alternative(fitted, share)));
         }
         let released =
-            told.iter().filter_map(|(_, fitted)| self.released(fitted, &nuisance)).collect();
+            models.iter().filter_map(|(_, fitted)| self.released(fitted, &nuisance)).collect();
         Some(Note::Held { released, odds: best, named })
     }
 
     /// Models with one held parameter let go, those that explain most of what the base leaves.
-    fn telling(&self, base: &Model, fixed: &[String]) -> Option<Vec<Model>> {
+    fn informative(&self, base: &Model, fixed: &[String]) -> Option<Vec<Model>> {
         let y = self.problem.simulate(base, Grain::Fine)?;
         let left = self.problem.residual(&y, Part::All);
         let mut all: Vec<(f64, Model)> = vec![];
         for cause in self.held_candidates(base, fixed) {
-            let knobs = vec![cause.probe];
-            let job = with_candidate(self.problem, base, &cause, &knobs, 1.0, Grain::Fine);
+            let parameters = vec![cause.probe];
+            let job = with_candidate(self.problem, base, &cause, &parameters, 1.0, Grain::Fine);
             let span = Part::All.span();
             let Some(y) = job.and_then(|job| self.problem.run(&[job], span).swap_remove(0)) else {
                 continue;
@@ -127,9 +127,9 @@ impl Context<'_, '_> {
             _ => return None,
         };
         let parameter = &self.problem.base.signals.parameters[p];
-        let key = Key::Knob(fitted.model.added.len() - 1, 0);
+        let key = Key::EffectParameter(fitted.model.added.len() - 1, 0);
         let precision = Precision::new(self.problem, nuisance, fitted);
-        let change = added.cause.clipped(&added.knobs, self.problem.step(Grain::Fine))[0];
+        let change = added.cause.clipped(&added.parameters, self.problem.step(Grain::Fine))[0];
         let unit = &parameter.unit;
         Some(Released {
             name: parameter.name.clone(),

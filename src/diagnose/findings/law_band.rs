@@ -32,14 +32,14 @@ pub(crate) fn band(
         let Some(part) = parts.iter().find(|part| part.effect == cause.effect) else {
             return vec![];
         };
-        for &knob in cause.linear.iter().chain(&cause.refine) {
-            let key = Key::Knob(index, knob);
+        for &parameter in cause.linear.iter().chain(&cause.refine) {
+            let key = Key::EffectParameter(index, parameter);
             if !chosen.fitted.keys.contains(&key) {
                 continue;
             }
-            let name = cause.card.knobs[knob].name.as_ref();
-            let told = part.parameters.iter().find(|value| value.name == name);
-            let Some(error) = told.and_then(|value| value.std_error).filter(|e| e.is_finite())
+            let name = cause.card.parameters[parameter].name.as_ref();
+            let value = part.parameters.iter().find(|value| value.name == name);
+            let Some(error) = value.and_then(|value| value.std_error).filter(|e| e.is_finite())
             else {
                 return vec![];
             };
@@ -77,8 +77,8 @@ pub(crate) fn band(
 /// A model with one number of a law moved.
 fn moved_by(model: &Model, key: Key, by: f64) -> Model {
     let mut moved = model.clone();
-    if let Key::Knob(index, knob) = key {
-        moved.added[index].knobs[knob] += by;
+    if let Key::EffectParameter(index, parameter) = key {
+        moved.added[index].parameters[parameter] += by;
     }
     moved
 }

@@ -23,9 +23,9 @@ const BETTER: f64 = 0.7;
 
 impl Context<'_, '_> {
     /// What is known of a curve of unknown shape.
-    pub fn found_curve(&self, cause: &Candidate, knobs: &[f64]) -> FoundShape {
-        let most = knobs.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        let nearest = self.resembles(cause, knobs);
+    pub fn found_curve(&self, cause: &Candidate, parameters: &[f64]) -> FoundShape {
+        let most = parameters.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        let nearest = self.resembles(cause, parameters);
         FoundShape::Curve { most, nearest: nearest.map(|(name, share)| (name.into(), share)) }
     }
 
@@ -53,13 +53,13 @@ impl Context<'_, '_> {
     }
 
     /// The shape of the library that makes up for most of a curve, and for how much of it.
-    fn resembles(&self, cause: &Candidate, knobs: &[f64]) -> Option<(&'static str, f64)> {
+    fn resembles(&self, cause: &Candidate, parameters: &[f64]) -> Option<(&'static str, f64)> {
         let base = &self.problem.base;
         let source = base.sources.find(cause.of.as_deref()?)?;
         let view = View::new(self.nominal.series(source), base.sampling_time);
         let at = |i: usize| view.quantile((i as f64 + 0.5) / POINTS as f64);
         let z: Vec<f64> = (0..POINTS).map(at).collect();
-        let wanted = DVector::from_vec(curve(cause.shape.as_ref(), knobs, &z));
+        let wanted = DVector::from_vec(curve(cause.shape.as_ref(), parameters, &z));
         let total = wanted.norm_squared();
         let mut best: Option<(&'static str, f64, usize)> = None;
         for (card, shape) in register::effects() {
@@ -72,7 +72,7 @@ impl Context<'_, '_> {
                 continue;
             }
             let Some(left) = left(shape.as_ref(), &view, &z, &wanted) else { continue };
-            let count = own.knobs.len();
+            let count = own.parameters.len();
             let is_better = best.is_none_or(|(_, other, numbers)| match count > numbers {
                 true => left < BETTER * other,
                 false => left < other / if count < numbers { BETTER } else { 1.0 },
@@ -95,8 +95,9 @@ fn left(
     wanted: &DVector<f64>,
 ) -> Option<f64> {
     let card = shape.card();
-    let linear: Vec<usize> =
-        (0..card.knobs.len()).filter(|&i| card.knobs[i].role == Role::Coefficient).collect();
+    let linear: Vec<usize> = (0..card.parameters.len())
+        .filter(|&i| card.parameters[i].role == Role::Coefficient)
+        .collect();
     let starts = shape.search(view).starts;
     let of = |start: &Vec<f64>| {
         if linear.is_empty() {
@@ -107,9 +108,9 @@ fn left(
         let columns: Vec<DVector<f64>> = linear
             .iter()
             .map(|&i| {
-                let mut knobs = start.clone();
-                knobs[i] = 1.0;
-                DVector::from_vec(curve(shape, &knobs, z))
+                let mut parameters = start.clone();
+                parameters[i] = 1.0;
+                DVector::from_vec(curve(shape, &parameters, z))
             })
             .collect();
         let matrix = DMatrix::from_columns(&columns);

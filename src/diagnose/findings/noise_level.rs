@@ -130,7 +130,7 @@ impl Context<'_, '_> {
     pub fn far_from_near(&self, chosen: &Finished, o: usize, rows: &[usize]) -> Vec<usize> {
         let off: Vec<f64> =
             self.problem.y[o].iter().zip(&chosen.y[o]).map(|(a, b)| (a - b).abs()).collect();
-        let alone = |&&k: &&usize| {
+        let isolated = |&&k: &&usize| {
             let level = |near: std::ops::Range<usize>| {
                 let known = near.filter(|&j| self.problem.known[o][j]);
                 median(&known.map(|j| off[j]).collect::<Vec<_>>())
@@ -140,6 +140,6 @@ impl Context<'_, '_> {
             let after = level(k + 1..(k + 1 + NEAR / 2).min(off.len()));
             off[k] > BEYOND * ROBUST * before.max(after)
         };
-        rows.iter().filter(alone).copied().collect()
+        rows.iter().filter(isolated).copied().collect()
     }
 }

@@ -126,9 +126,9 @@ pub enum Note {
         left_out: usize,
     },
     /// Parameters of which the record tells less than all: what they can do together unseen, in words.
-    CannotTell {
+    Undetermined {
         /// `changing b by +1.00 x, c by -1.00 x together changes nothing that was measured`.
-        together: String,
+        parameters: String,
     },
     /// Parameters that are named make up for each other.
     ParametersMakeUp {

@@ -19,18 +19,18 @@ impl Context<'_, '_> {
     pub fn values(&self, chosen: &Finished, index: usize) -> Vec<Value> {
         let added = &chosen.fitted.model.added[index];
         let cause = &added.cause;
-        let knobs = cause.clipped(&added.knobs, self.problem.step(Grain::Fine));
+        let parameters = cause.clipped(&added.parameters, self.problem.step(Grain::Fine));
         let errors = profile_likelihood::errors(self.problem, chosen, index);
         let error = |i: usize| errors[i];
         if let Wire::Parameter(p) = cause.wire {
             return vec![Value {
                 name: "value".into(),
-                value: chosen.fitted.model.theta[p] + knobs[0],
+                value: chosen.fitted.model.theta[p] + parameters[0],
                 std_error: chosen.error_of(&cause.into, error(0)),
                 unit: cause.units.0.clone(),
             }];
         }
-        let knobs = cause.card.knobs.iter().zip(knobs).enumerate();
+        let parameters = cause.card.parameters.iter().zip(parameters).enumerate();
         // where the values of a free curve stand is part of what was found
         let at = crate::candidates::free_curve::knots_of(cause).into_iter().enumerate().map(
             |(i, knot)| Value {
@@ -40,35 +40,37 @@ impl Context<'_, '_> {
                 unit: cause.units.1.clone(),
             },
         );
-        let values =
-            knobs.filter(|(_, (_, value))| value.is_finite()).map(|(i, (knob, value))| Value {
-                name: knob.name.to_string(),
+        let values = parameters.filter(|(_, (_, value))| value.is_finite()).map(
+            |(i, (parameter, value))| Value {
+                name: parameter.name.to_string(),
                 value,
                 std_error: error(i),
                 unit: match cause.wire {
                     Wire::Drift(_) => per_second(&cause.units.0),
-                    _ => knob.unit.text(&cause.units.0, &cause.units.1),
+                    _ => parameter.unit.text(&cause.units.0, &cause.units.1),
                 },
-            });
+            },
+        );
         values.chain(at).collect()
     }
 
     /// The sum of two coefficients by which a law is stated: its variance is that of both and twice
     /// their covariance.
     pub fn total(&self, chosen: &Finished, index: usize) -> Option<Value> {
-        let Added { cause, knobs } = &chosen.fitted.model.added[index];
+        let Added { cause, parameters } = &chosen.fitted.model.added[index];
         let Size::Total(names) = cause.card.properties.size else { return None };
-        let at = |name: &str| cause.card.knobs.iter().position(|knob| knob.name == name);
+        let at =
+            |name: &str| cause.card.parameters.iter().position(|parameter| parameter.name == name);
         let own = [at(names[0])?, at(names[1])?];
-        let keys = own.map(|i| Key::Knob(index, i));
+        let keys = own.map(|i| Key::EffectParameter(index, i));
         let between = chosen.precision.as_ref().and_then(|precision| precision.between(&keys));
         let variance = between.map(|between| between.sum());
-        let knob = &cause.card.knobs[own[0]];
+        let parameter = &cause.card.parameters[own[0]];
         Some(Value {
-            name: knob.name.to_string(),
-            value: own.iter().map(|&i| knobs[i]).sum(),
+            name: parameter.name.to_string(),
+            value: own.iter().map(|&i| parameters[i]).sum(),
             std_error: variance.filter(|v| *v > 0.0 && v.is_finite()).map(f64::sqrt),
-            unit: knob.unit.text(&cause.units.0, &cause.units.1),
+            unit: parameter.unit.text(&cause.units.0, &cause.units.1),
         })
     }
 }

@@ -77,10 +77,10 @@ fn free_curve(
         let others = model.without_all(own);
         let mut job = problem.job(&others, Grain::Coarse)?;
         let mut placed: Vec<Placed> =
-            others.added.iter().filter_map(|a| a.cause.placed(&a.knobs)).collect();
+            others.added.iter().filter_map(|a| a.cause.placed(&a.parameters)).collect();
         placed.push(Placed::new(Box::new(shape), &cause.into, cause.of.as_deref()));
         job.plan = problem.plan_anew(Grain::Coarse, &placed)?;
-        job.lane.knobs.extend_from_slice(values);
+        job.lane.effect_values.extend_from_slice(values);
         Some(job)
     };
     let step = 0.05 * size;

@@ -36,7 +36,7 @@ impl Context<'_, '_> {
             let unit = cause.linear.first().map_or_else(String::new, |&i| match cause.wire {
                 Wire::Parameter(_) => cause.units.0.clone(),
                 Wire::Drift(_) => format!("{}/s", cause.units.0),
-                _ => cause.card.knobs[i].unit.text(&cause.units.0, &cause.units.1),
+                _ => cause.card.parameters[i].unit.text(&cause.units.0, &cause.units.1),
             });
             entries.push(NotFound {
                 effect: cause.effect.into(),
@@ -69,7 +69,7 @@ impl Context<'_, '_> {
             notes.push(Note::MostCauses);
         }
         let undetermined = chosen.undetermined.iter().map(|combination| combination.text.clone());
-        notes.extend(undetermined.map(|together| Note::CannotTell { together }));
+        notes.extend(undetermined.map(|parameters| Note::Undetermined { parameters }));
         if chosen.is_doubting() {
             notes.push(Note::AllParametersDoubted { prior: crate::fit::nuisance::PRIOR });
         }

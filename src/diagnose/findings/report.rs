@@ -171,10 +171,10 @@ impl Context<'_, '_> {
         let mut extended = system.clone();
         let step = self.problem.step(Grain::Fine);
         for added in &model.added {
-            let knobs = added.cause.clipped(&added.knobs, step);
+            let parameters = added.cause.clipped(&added.parameters, step);
             match added.cause.wire {
-                Wire::Parameter(p) => theta[p] += knobs[0],
-                _ => extended.effects.extend(added.cause.placed(&knobs)),
+                Wire::Parameter(p) => theta[p] += parameters[0],
+                _ => extended.effects.extend(added.cause.placed(&parameters)),
             }
         }
         let changes: Vec<(String, f64)> = signals

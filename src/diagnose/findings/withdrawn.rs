@@ -17,9 +17,9 @@ impl Context<'_, '_> {
         after: &Scored,
     ) -> Result<Vec<Withdrawn>, DiagnoseError> {
         let one = |added: &Added| {
-            let Added { cause, knobs } = added;
+            let Added { cause, parameters } = added;
             let with =
-                test.score(&self.extend(&chosen.fitted.model.with(cause, knobs.clone()))?)?;
+                test.score(&self.extend(&chosen.fitted.model.with(cause, parameters.clone()))?)?;
             Ok(Withdrawn { cause: as_cause(added), test_rmse_ratio: ratio(&with, after) })
         };
         chosen.found.withdrawn.iter().map(one).collect()
@@ -38,10 +38,10 @@ fn ratio(of: &Scored, over: &Scored) -> f64 {
 fn as_cause(added: &Added) -> Cause {
     let cause = &added.cause;
     let value = |&i: &usize| Value {
-        name: cause.card.knobs[i].name.to_string(),
-        value: added.knobs[i],
+        name: cause.card.parameters[i].name.to_string(),
+        value: added.parameters[i],
         std_error: None,
-        unit: cause.card.knobs[i].unit.text(&cause.units.0, &cause.units.1),
+        unit: cause.card.parameters[i].unit.text(&cause.units.0, &cause.units.1),
     };
     let parameters: Vec<Value> = cause.linear.iter().chain(&cause.refine).map(value).collect();
     Cause {

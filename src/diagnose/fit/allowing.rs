@@ -1,4 +1,4 @@
-//! Errors that allow for parameters to be wrong that a story still trusts.
+//! Errors that allow for parameters to be wrong that a hypothesis still trusts.
 
 use crate::candidates::candidate::Wire;
 use crate::estimate::{Combination, unseen};
@@ -16,21 +16,21 @@ use crate::statistics::{add_to_basis, project};
 const STEP: f64 = 1e-5;
 
 impl Tracks<'_, '_> {
-    /// Combinations of parameters that change nothing, where a story names one of them: as `estimate`
-    /// tells them, whatever the story itself holds.
-    pub(crate) fn undetermined(&self, story: &Finished) -> Vec<Combination> {
-        let model = &story.fitted.model;
+    /// Combinations of parameters that change nothing, where a hypothesis names one of them: as `estimate`
+    /// reports them, whatever the hypothesis itself holds.
+    pub(crate) fn undetermined(&self, answer: &Finished) -> Vec<Combination> {
+        let model = &answer.fitted.model;
         let is_named = |added: &Added| matches!(added.cause.wire, Wire::Parameter(_));
-        if story.moved.is_empty() && !model.added.iter().any(is_named) {
+        if answer.moved.is_empty() && !model.added.iter().any(is_named) {
             return vec![];
         }
-        let held = Nuisance { free: vec![], ..story.nuisance.clone() };
+        let held = Nuisance { free: vec![], ..answer.nuisance.clone() };
         let all = held.with_parameters(self.problem, &self.allowed.fixed);
         // a parameter that is named is one number, not two
         let mut bare = model.clone();
         for added in &model.added {
             if let Wire::Parameter(p) = added.cause.wire {
-                bare.theta[p] += added.knobs[0];
+                bare.theta[p] += added.parameters[0];
             }
         }
         bare.added.retain(|added| !is_named(added));
@@ -62,28 +62,28 @@ impl Tracks<'_, '_> {
         unseen(&names, &relative)
     }
 
-    /// What is known of a story's numbers where it says itself that a parameter of the model is
+    /// What is known of the numbers of a hypothesis where it says itself that a parameter of the model is
     /// wrong: those that it still trusts may be as well, and what it found makes up for them.
-    pub(crate) fn doubting(&self, story: Finished) -> Finished {
-        let model = &story.fitted.model;
+    pub(crate) fn doubting(&self, answer: Finished) -> Finished {
+        let model = &answer.fitted.model;
         let wire = |added: &Added| match added.cause.wire {
             Wire::Parameter(p) => Some(p),
             _ => None,
         };
         let named: Vec<usize> = model.added.iter().filter_map(wire).collect();
-        let is_off = !named.is_empty() || !story.moved.is_empty();
-        let is_alone = model.added.len() - model.known() + story.moved.len() < 2;
-        let held = Nuisance { free: vec![], ..story.nuisance.clone() };
+        let is_off = !named.is_empty() || !answer.moved.is_empty();
+        let is_single = model.added.len() - model.known() + answer.moved.len() < 2;
+        let held = Nuisance { free: vec![], ..answer.nuisance.clone() };
         let mut all = held.with_parameters(self.problem, &self.allowed.fixed);
         all.free.retain(|(p, _)| !named.contains(p));
-        if !is_off || is_alone || all.free.len() <= story.nuisance.free.len() {
-            return story;
+        if !is_off || is_single || all.free.len() <= answer.nuisance.free.len() {
+            return answer;
         }
         let how = Refit::last();
         // derivatives where it stands
         let how = Refit { settings: Settings { iterations: 1, ..how.settings }, ..how };
         let fitted = refit(self.problem, &all, std::slice::from_ref(model), how).swap_remove(0);
         let doubted = fitted.and_then(|fitted| Precision::new(self.problem, &all, &fitted));
-        Finished { precision: doubted.or(story.precision), ..story }
+        Finished { precision: doubted.or(answer.precision), ..answer }
     }
 }

@@ -27,10 +27,10 @@ impl Blocks {
 
     /// One point per group, from the present point and one point per unknown in which that
     /// unknown alone has moved.
-    pub fn points(&self, at: &[f64], alone: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    pub fn points(&self, at: &[f64], moved: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let moved = |group: &Vec<usize>| {
             let mut point = at.to_vec();
-            group.iter().for_each(|&j| point[j] = alone[j][j]);
+            group.iter().for_each(|&j| point[j] = moved[j][j]);
             point
         };
         self.groups.iter().map(moved).collect()
@@ -57,8 +57,8 @@ impl Blocks {
         }
         let mut all = vec![None; keys.len()];
         for (group, answer) in self.groups.iter().zip(answers) {
-            if let [alone] = group[..] {
-                all[alone] = answer;
+            if let [moved] = group[..] {
+                all[moved] = answer;
                 continue;
             }
             let Some(answer) = answer else { continue };
@@ -86,12 +86,12 @@ mod tests {
         let keys = [Key::Start(0, 0), Key::Start(0, 1), Key::Start(1, 0), Key::Theta(3)];
         let blocks = Blocks::new(&keys);
         assert_eq!(blocks.groups, [vec![0, 2], vec![1], vec![3]]);
-        let alone: Vec<Vec<f64>> = (0..4)
+        let moved: Vec<Vec<f64>> = (0..4)
             .map(|j| {
                 (0..4).map(|i| if i == j { 10.0 + f64::from(i) } else { f64::from(i) }).collect()
             })
             .collect();
-        let points = blocks.points(&[0.0, 1.0, 2.0, 3.0], &alone);
+        let points = blocks.points(&[0.0, 1.0, 2.0, 3.0], &moved);
         assert_eq!(points[0], [10.0, 1.0, 12.0, 3.0]);
         assert_eq!(points[2], [0.0, 1.0, 2.0, 13.0]);
     }

@@ -12,7 +12,7 @@ use crate::fit::refit::{Refit, refit};
 const AS_GOOD: f64 = 2.0;
 
 impl Tracks<'_, '_> {
-    /// The same story with the one parameter moved that tells it best, if none is named yet and
+    /// The same hypothesis with the one parameter moved that states it best, if none is named yet and
     /// one is enough; else with the one named that went furthest.
     pub(crate) fn off_the_ridge(&mut self, mut all: Finished) -> Option<Finished> {
         let lost =

@@ -9,8 +9,8 @@ pub(crate) enum Key {
     Start(usize, usize),
     /// Parameter.
     Theta(usize),
-    /// Knob of an added cause.
-    Knob(usize, usize),
+    /// EffectParameter of an added cause.
+    EffectParameter(usize, usize),
 }
 
 /// The value of a key.
@@ -18,7 +18,7 @@ pub(crate) fn get(model: &Model, key: Key) -> f64 {
     match key {
         Key::Start(segment, i) => model.starts[segment][i],
         Key::Theta(p) => model.theta[p],
-        Key::Knob(a, i) => model.added[a].knobs[i],
+        Key::EffectParameter(a, i) => model.added[a].parameters[i],
     }
 }
 
@@ -27,6 +27,6 @@ pub(crate) fn set(model: &mut Model, key: Key, value: f64) {
     match key {
         Key::Start(segment, i) => model.starts[segment][i] = value,
         Key::Theta(p) => model.theta[p] = value,
-        Key::Knob(a, i) => model.added[a].knobs[i] = value,
+        Key::EffectParameter(a, i) => model.added[a].parameters[i] = value,
     }
 }

@@ -61,7 +61,7 @@ impl Nuisance {
         matches!(cause.wire, Wire::Parameter(p) if self.free.iter().any(|&(q, _)| q == p))
     }
 
-    /// Keys that move in a model: nuisance first, then the knobs of its causes.
+    /// Keys that move in a model: nuisance first, then the parameters of its causes.
     pub fn keys(&self, model: &Model) -> Vec<Key> {
         let mut keys = vec![];
         for segment in 0..self.segments {
@@ -70,7 +70,9 @@ impl Nuisance {
         keys.extend(self.free.iter().map(|&(p, _)| Key::Theta(p)));
         for (a, added) in model.added.iter().enumerate() {
             let cause = &added.cause;
-            keys.extend(cause.linear.iter().chain(&cause.refine).map(|&i| Key::Knob(a, i)));
+            keys.extend(
+                cause.linear.iter().chain(&cause.refine).map(|&i| Key::EffectParameter(a, i)),
+            );
         }
         keys.retain(|key| self.held != Some(*key));
         keys
@@ -97,12 +99,12 @@ impl Nuisance {
                     unknown.expected(nominal, PRIOR * size)
                 }
             }
-            Key::Knob(a, i) => {
+            Key::EffectParameter(a, i) => {
                 let cause = &model.added[a].cause;
                 let (min, max) = cause.bounds(i);
                 let scale = if cause.linear.contains(&i) {
                     let size: f64 =
-                        cause.linear.iter().map(|&j| model.added[a].knobs[j].powi(2)).sum();
+                        cause.linear.iter().map(|&j| model.added[a].parameters[j].powi(2)).sum();
                     size.sqrt().max(cause.probe.abs())
                 } else {
                     let range = if (max - min).is_finite() { 0.02 * (max - min) } else { 0.0 };
@@ -124,7 +126,7 @@ impl Nuisance {
         let keys = self.keys(model);
         let r0 = problem.residual(y0, Part::Fit);
         let at: Vec<f64> = keys.iter().map(|&key| get(model, key)).collect();
-        let alone = |(j, &key): (usize, &Key)| {
+        let moved = |(j, &key): (usize, &Key)| {
             let unknown = self.unknown(problem, model, key);
             let step = 2e-3 * unknown.scale;
             let room = unknown.bounds.1 - unknown.start;
@@ -132,14 +134,14 @@ impl Nuisance {
             point[j] = unknown.start + if room < step { -step } else { step };
             point
         };
-        let alone: Vec<Vec<f64>> = keys.iter().enumerate().map(alone).collect();
+        let moved: Vec<Vec<f64>> = keys.iter().enumerate().map(moved).collect();
         let blocks = Blocks::new(&keys);
         let job = |point: &Vec<f64>| {
             let mut moved = model.clone();
             keys.iter().zip(point).for_each(|(&key, &value)| set(&mut moved, key, value));
             problem.job(&moved, Grain::Coarse)
         };
-        let jobs: Option<Vec<Job>> = blocks.points(&at, &alone).iter().map(job).collect();
+        let jobs: Option<Vec<Job>> = blocks.points(&at, &moved).iter().map(job).collect();
         let Some(jobs) = jobs else { return vec![] };
         let residual = |y: Simulated| y.map(|y| problem.residual(&y, Part::Fit));
         let answers = problem.run(&jobs, Span::Fit).into_iter().map(residual).collect();

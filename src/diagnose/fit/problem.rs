@@ -15,7 +15,7 @@ use crate::system::{Base, Drive, Lane, Placed, Plan, System, SystemError};
 /// Lanes that are one block of numbers.
 const PACK: usize = 8;
 /// Blocks that are simulated side by side in one piece of work, at most.
-const TOGETHER: usize = 8;
+const PACKS_AT_ONCE: usize = 8;
 
 /// Share of the memory that simulations side by side may take.
 const AT_ONCE: u64 = 12;
@@ -228,21 +228,21 @@ impl<'a> Problem<'a> {
         let step = self.step(grain);
         let mut theta = model.theta.clone();
         let mut placed = vec![];
-        let mut knobs: Vec<f64> = self.system.effects.iter().flat_map(own_knobs).collect();
+        let mut effect_values: Vec<f64> = self.system.effects.iter().flat_map(own_values).collect();
         for added in &model.added {
-            let own = added.cause.clipped(&added.knobs, step);
+            let own = added.cause.clipped(&added.parameters, step);
             match added.cause.wire {
                 Wire::Parameter(p) => theta[p] += own[0],
                 _ => {
                     placed.push(added.cause.placed(&own)?);
-                    knobs.extend(own);
+                    effect_values.extend(own);
                 }
             }
         }
         let plan = self.plan(grain, &placed)?;
         Some(Job {
             plan,
-            lane: Lane { theta, starts: model.starts.clone(), knobs, ..Lane::default() },
+            lane: Lane { theta, starts: model.starts.clone(), effect_values, ..Lane::default() },
         })
     }
 
@@ -267,7 +267,7 @@ impl<'a> Problem<'a> {
             }
         }
         let threads = rayon::current_num_threads();
-        let rounds = packs.len().div_ceil(threads * TOGETHER).max(1);
+        let rounds = packs.len().div_ceil(threads * PACKS_AT_ONCE).max(1);
         let share = packs.len().div_ceil(threads * rounds).max(1);
         let pieces: Vec<Vec<usize>> = packs.chunks(share).map(<[_]>::concat).collect();
         let done: Vec<Vec<(usize, Simulated)>> =
@@ -340,8 +340,8 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Present knob values of an effect that the system already has.
-fn own_knobs(placed: &Placed) -> Vec<f64> {
+/// Present parameter values of an effect that the system already has.
+fn own_values(placed: &Placed) -> Vec<f64> {
     use crate::effect::Mechanism;
     let card = placed.effect.card();
     if card.mechanism == Mechanism::Data { vec![] } else { card.values() }

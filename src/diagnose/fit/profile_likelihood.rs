@@ -22,7 +22,7 @@ const HALF: f64 = 1.96;
 const FURTHEST: f64 = 16.0;
 const HALVINGS: usize = 3;
 /// Share of the rise that a tangent foretells at which it is believed.
-const AS_FORETOLD: f64 = 0.5;
+const AS_PREDICTED: f64 = 0.5;
 
 /// One side of one number.
 struct Side {
@@ -30,7 +30,7 @@ struct Side {
     /// Half of its interval by the tangent, with the side's sign, and the rise of the sum of
     /// squares foretold there.
     half: f64,
-    foretold: f64,
+    predicted: f64,
     /// Multiple of `half` up to which it rises by less, and the model there.
     at: f64,
     model: Model,
@@ -45,21 +45,21 @@ struct Side {
 pub(crate) fn errors(problem: &Problem<'_>, chosen: &Finished, index: usize) -> Vec<Option<f64>> {
     let (fitted, model) = (&chosen.fitted, &chosen.fitted.model);
     let cause = &model.added[index].cause;
-    let error = |i: usize| chosen.error(Key::Knob(index, i));
-    let mut errors: Vec<Option<f64>> = (0..cause.card.knobs.len()).map(error).collect();
-    if !is_badly_known(cause, &model.added[index].knobs, &errors) {
+    let error = |i: usize| chosen.error(Key::EffectParameter(index, i));
+    let mut errors: Vec<Option<f64>> = (0..cause.card.parameters.len()).map(error).collect();
+    if !is_badly_known(cause, &model.added[index].parameters, &errors) {
         return errors;
     }
     let Some(curvatures) = curvatures(problem, &chosen.nuisance, fitted) else { return errors };
     let mut sides = vec![];
     for &i in cause.linear.iter().chain(&cause.refine) {
-        let key = Key::Knob(index, i);
+        let key = Key::EffectParameter(index, i);
         let at = fitted.keys.iter().position(|k| *k == key);
         let (Some(error), Some(at)) = (errors[i], at) else { continue };
-        let foretold = curvatures[at] * (HALF * error).powi(2);
+        let predicted = curvatures[at] * (HALF * error).powi(2);
         let side = |sign: f64| {
             let half = sign * HALF * error;
-            Side::new(key, half, foretold, model.clone())
+            Side::new(key, half, predicted, model.clone())
         };
         sides.extend([side(-1.0), side(1.0)]);
     }
@@ -67,20 +67,20 @@ pub(crate) fn errors(problem: &Problem<'_>, chosen: &Finished, index: usize) -> 
         ask(problem, chosen, &mut sides);
     }
     for side in sides {
-        let Key::Knob(_, i) = side.key else { continue };
+        let Key::EffectParameter(_, i) = side.key else { continue };
         errors[i] = errors[i].map(|error| error.max(side.at * side.half.abs() / HALF));
     }
     errors
 }
 
 /// Whether a law has thresholds, and numbers of which the record says little.
-fn is_badly_known(cause: &Candidate, knobs: &[f64], errors: &[Option<f64>]) -> bool {
-    let told = if cause.linear.is_empty() { &cause.refine } else { &cause.linear };
-    let badly = |&i: &usize| errors[i].is_some_and(|e| e > BADLY_KNOWN * knobs[i].abs());
+fn is_badly_known(cause: &Candidate, parameters: &[f64], errors: &[Option<f64>]) -> bool {
+    let named = if cause.linear.is_empty() { &cause.refine } else { &cause.linear };
+    let badly = |&i: &usize| errors[i].is_some_and(|e| e > BADLY_KNOWN * parameters[i].abs());
     !cause.is_drawn()
         && !cause.is_known_limit()
         && !cause.refine.is_empty()
-        && told.iter().any(badly)
+        && named.iter().any(badly)
 }
 
 /// By how much the sum of squares rises, to first order, where one unknown leaves its place by
@@ -122,8 +122,8 @@ fn ask(problem: &Problem<'_>, chosen: &Finished, sides: &mut [Side]) {
 }
 
 impl Side {
-    fn new(key: Key, half: f64, foretold: f64, model: Model) -> Self {
-        Self { key, half, foretold, at: 0.0, model, beyond: None, halvings: 0, done: false }
+    fn new(key: Key, half: f64, predicted: f64, model: Model) -> Self {
+        Self { key, half, predicted, at: 0.0, model, beyond: None, halvings: 0, done: false }
     }
 
     /// The multiple to be asked next.
@@ -138,7 +138,7 @@ impl Side {
     /// others where they were last.
     fn moved(&self, model: &Model) -> Model {
         let mut moved = self.model.clone();
-        if let Key::Knob(index, i) = self.key {
+        if let Key::EffectParameter(index, i) = self.key {
             let (min, max) = model.added[index].cause.bounds(i);
             let to = get(model, self.key) + self.next() * self.half;
             set(&mut moved, self.key, to.clamp(min, max.max(min)));
@@ -149,9 +149,9 @@ impl Side {
     /// Takes in by how much the sum of squares has risen where it was asked.
     fn take(&mut self, reached: f64, rise: f64, model: Option<Model>) {
         let asked = self.next();
-        let share = if self.at == 0.0 { AS_FORETOLD } else { 1.0 };
+        let share = if self.at == 0.0 { AS_PREDICTED } else { 1.0 };
         self.halvings += usize::from(self.beyond.is_some());
-        if rise < share * self.foretold {
+        if rise < share * self.predicted {
             self.at = reached;
             self.model = model.unwrap_or_else(|| self.model.clone());
             // a bound is the end, rounding is not
@@ -171,7 +171,7 @@ mod tests {
 
     fn side() -> Side {
         let model = Model { theta: vec![], starts: vec![], added: vec![] };
-        Side::new(Key::Knob(0, 0), 2.0, 4.0, model)
+        Side::new(Key::EffectParameter(0, 0), 2.0, 4.0, model)
     }
 
     /// Where a side ends whose sum of squares rises like this.
@@ -186,7 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_tangent_that_foretells_the_rise_is_believed() {
+    fn a_tangent_that_predicts_the_rise_is_kept() {
         assert_eq!(end(|t| 4.0 * t * t, 99.0), (0.0, 1));
     }
 

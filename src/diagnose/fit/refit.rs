@@ -1,4 +1,4 @@
-//! Fits of models: knobs, and what is nuisance beside them.
+//! Fits of models: parameters, and what is nuisance beside them.
 
 use std::sync::Arc;
 
@@ -97,7 +97,7 @@ fn once(
             set(&mut model, key, value);
         }
         for added in &mut model.added {
-            added.knobs = added.cause.clipped(&added.knobs, problem.step(how.grain));
+            added.parameters = added.cause.clipped(&added.parameters, problem.step(how.grain));
         }
         model
     };

@@ -48,7 +48,7 @@ impl Problem<'_> {
         let (fine, coarse) = (self.step(Grain::Fine), self.step(Grain::Coarse));
         let blunt = |model: &&Model| {
             model.added.iter().any(|added| {
-                let mut steep = added.knobs.clone();
+                let mut steep = added.parameters.clone();
                 let card = &added.cause.card;
                 if let Some(width) = card.position(card.properties.smoothing_width) {
                     steep[width] *= 0.9;

@@ -4,11 +4,11 @@ use std::sync::Arc;
 
 use crate::candidates::candidate::Candidate;
 
-/// A cause that is part of a model, with its knobs.
+/// A cause that is part of a model, with its parameters.
 #[derive(Debug, Clone)]
 pub(crate) struct Added {
     pub cause: Arc<Candidate>,
-    pub knobs: Vec<f64>,
+    pub parameters: Vec<f64>,
 }
 
 /// A baseline with parameters, initial states and added causes.
@@ -21,9 +21,9 @@ pub(crate) struct Model {
 
 impl Model {
     /// The same with one more cause.
-    pub fn with(&self, cause: &Arc<Candidate>, knobs: Vec<f64>) -> Self {
+    pub fn with(&self, cause: &Arc<Candidate>, parameters: Vec<f64>) -> Self {
         let mut model = self.clone();
-        model.added.push(Added { cause: cause.clone(), knobs });
+        model.added.push(Added { cause: cause.clone(), parameters });
         model
     }
 
@@ -35,7 +35,9 @@ impl Model {
 
     /// Whether another is the same, number by number.
     pub fn is(&self, other: &Self) -> bool {
-        let same = |(a, b): (&Added, &Added)| Arc::ptr_eq(&a.cause, &b.cause) && a.knobs == b.knobs;
+        let same = |(a, b): (&Added, &Added)| {
+            Arc::ptr_eq(&a.cause, &b.cause) && a.parameters == b.parameters
+        };
         self.theta == other.theta
             && self.starts == other.starts
             && self.added.len() == other.added.len()

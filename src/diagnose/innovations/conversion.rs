@@ -22,7 +22,7 @@ use crate::fit::refit::Fitted;
 use crate::prepare::prepared::Prepared;
 use crate::system::Placed;
 
-/// A law as a cause of the library, and the covariance of its knobs.
+/// A law as a cause of the library, and the covariance of its parameters.
 struct Law {
     added: Added,
     covariance: DMatrix<f64>,
@@ -52,7 +52,7 @@ pub(super) fn finished(
     for (a, Law { added, covariance }) in laws.iter().enumerate() {
         let free = added.cause.linear.iter().chain(&added.cause.refine);
         for &i in free.filter(|&&i| covariance.get((i, i)).is_some_and(|v| *v > 0.0)) {
-            keys.push(Key::Knob(a, i));
+            keys.push(Key::EffectParameter(a, i));
             at.push((a, i));
         }
     }
@@ -134,22 +134,22 @@ fn laws_of(known: &[Arc<Candidate>], cause: &NamedCause, theta: &[f64]) -> Optio
         let is_own = |c: &&Arc<Candidate>| matches!(c.wire, Wire::Parameter(_));
         let own = known.iter().filter(is_own).find(|c| c.into == cause.into)?;
         let Wire::Parameter(p) = own.wire else { return None };
-        let added = Added { cause: own.clone(), knobs: vec![value - theta[p]] };
+        let added = Added { cause: own.clone(), parameters: vec![value - theta[p]] };
         let variance = error.map_or(0.0, |error| error * error);
         return Some(vec![Law { added, covariance: DMatrix::from_element(1, 1, variance) }]);
     }
     let one = |(i, placed): (usize, &Placed)| {
         let (own, factor) = known.iter().find_map(|c| Some((c, stands_for(c, placed)?)))?;
-        let mut knobs = placed.effect.card().values();
-        let mut scale = DVector::repeat(knobs.len(), 1.0);
+        let mut parameters = placed.effect.card().values();
+        let mut scale = DVector::repeat(parameters.len(), 1.0);
         for &i in &own.linear {
-            knobs[i] *= factor;
+            parameters[i] *= factor;
             scale[i] = factor;
         }
-        let none = DMatrix::zeros(knobs.len(), knobs.len());
+        let none = DMatrix::zeros(parameters.len(), parameters.len());
         let covariance = cause.covariances.get(i).unwrap_or(&none);
         let covariance = covariance.component_mul(&(&scale * scale.transpose()));
-        Some(Law { added: Added { cause: own.clone(), knobs }, covariance })
+        Some(Law { added: Added { cause: own.clone(), parameters }, covariance })
     };
     cause.laws.iter().enumerate().map(one).collect()
 }
@@ -159,10 +159,11 @@ fn laws_of(known: &[Arc<Candidate>], cause: &NamedCause, theta: &[f64]) -> Optio
 fn stands_for(cause: &Candidate, placed: &Placed) -> Option<f64> {
     let values = placed.effect.card().values();
     let start = cause.starts.first()?;
-    let same = cause.card.knobs.iter().zip(&values).zip(start).all(|((knob, value), start)| {
-        let choice = knob.role != Role::Choice || (value - start).abs() < 0.5;
-        choice && value.is_finite() == start.is_finite()
-    });
+    let same =
+        cause.card.parameters.iter().zip(&values).zip(start).all(|((parameter, value), start)| {
+            let choice = parameter.role != Role::Choice || (value - start).abs() < 0.5;
+            choice && value.is_finite() == start.is_finite()
+        });
     if cause.effect != placed.effect.typetag_name() || !same || values.len() != start.len() {
         return None;
     }

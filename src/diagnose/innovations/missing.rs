@@ -9,7 +9,7 @@ use crate::fit::finished::Finished;
 use crate::prepare::prepared::Prepared;
 
 /// Coordinates that are told of each channel.
-const TOLD: usize = 4;
+const REPORTED: usize = 4;
 
 /// What a search says, with the missing force and what disturbs the plant.
 pub(crate) fn completed(prepared: &Prepared<'_>, chosen: &Finished, of: Searched) -> Searched {
@@ -32,7 +32,7 @@ fn missing(prepared: &Prepared<'_>) -> Vec<MissingForce> {
         explained_by: force
             .explained_by
             .into_iter()
-            .take(TOLD)
+            .take(REPORTED)
             .map(|by| ExplainedBy { coordinate: by.coordinate, share: by.share })
             .collect(),
     })

@@ -55,7 +55,7 @@ fn directly(
         return Ok(None);
     }
     let nothing = prepared.search(allowed, 0, watch)?;
-    watch.tell(0.1, "searching by innovations");
+    watch.report(0.1, "searching by innovations");
     let found = by_innovations(prepared, allowed, most, &nothing, watch);
     let found = found.filter(|found| found.causes() > 0);
     Ok(found.filter(|found| is_called_for(prepared, allowed, found).unwrap_or(false)))
@@ -127,7 +127,7 @@ fn reconsidered(
     if !may_be_asked(prepared, allowed, most) || watch.stopped() || is_white(prepared, &answer) {
         return (answer, None);
     }
-    watch.tell(0.9, "asking for noise inside the plant");
+    watch.report(0.9, "asking for noise inside the plant");
     match by_innovations(prepared, allowed, most, &answer, watch) {
         Some(better) => (better, Some(answer)),
         None => (answer, None),
@@ -157,7 +157,7 @@ fn by_innovations(
     if !rivals.call_for_more(CLEARLY) || watch.stopped() {
         return None;
     }
-    watch.tell(0.92, "searching by innovations");
+    watch.report(0.92, "searching by innovations");
     let held: Vec<_> = problem.choose.clone();
     let found = base.explain(most, &held, &|| watch.stopped()).ok()?;
     let of_answer = rivals.best() - taken(&base, answer);
@@ -165,15 +165,15 @@ fn by_innovations(
     if !none && found.criterion() <= of_answer {
         return None;
     }
-    let mut told = finished(prepared, allowed, (&base, &found))?;
-    told.dependence = depends(prepared, (&base, &found), &told)?;
-    if none && told.dependence > DEPENDS {
+    let mut answer = finished(prepared, allowed, (&base, &found))?;
+    answer.dependence = depends(prepared, (&base, &found), &answer)?;
+    if none && answer.dependence > DEPENDS {
         return None;
     }
     // a likelihood is exact, a model is not: what it predicts must not get worse
     let before = left(problem, &prepared.start)?;
-    let after = left(problem, &told.fitted.model)?;
-    (after <= WORSE * before).then_some(told)
+    let after = left(problem, &answer.fitted.model)?;
+    (after <= WORSE * before).then_some(answer)
 }
 
 /// Score that the innovations of an explanation follow from inputs before them, which those of the true
@@ -181,10 +181,10 @@ fn by_innovations(
 fn depends(
     prepared: &Prepared<'_>,
     (base, found): (&Predictor, &Explanation),
-    told: &Finished,
+    answer: &Finished,
 ) -> Option<f64> {
     let problem = &prepared.problem;
-    let system = prepared.context().extend(&told.fitted.model).ok()?;
+    let system = prepared.context().extend(&answer.fitted.model).ok()?;
     let with = extended(base, &system, step(problem))?.starting(found.starts.clone());
     let innovations = with.innovations(&found.noise, true).ok()?.values;
     // what was not foreseen of the next sample, against all up to this one

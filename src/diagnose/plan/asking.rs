@@ -43,15 +43,15 @@ impl Planning<'_, '_> {
         // the sizes that probes end with are those that hit
         steer(problem, &mut sharing, causes, &mut probes, &r0, gentle, false);
         let asked = probes.into_iter().zip(causes).map(|(probe, cause)| {
-            let mut knobs = cause.starts[probe.start].clone();
+            let mut parameters = cause.starts[probe.start].clone();
             let mut blend = 1.0;
             match cause.linear.first() {
-                Some(&knob) => knobs[knob] = probe.size,
+                Some(&parameter) => parameters[parameter] = probe.size,
                 None => blend = probe.size.abs().min(1.0),
             }
             let size = if cause.blended() { blend } else { probe.size };
             let size = (probe.done && !probe.failed).then_some(size);
-            Asked { cause: cause.clone(), knobs, blend, size }
+            Asked { cause: cause.clone(), parameters, blend, size }
         });
         Some(asked.collect())
     }

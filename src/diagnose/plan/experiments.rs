@@ -1,7 +1,6 @@
 //! Other experiments with the same machine: the inputs of a record, changed.
 
-use realfft::RealFftPlanner;
-
+use crate::fourier;
 use crate::statistics::{deviation, mean};
 use crate::system::Drive;
 
@@ -64,8 +63,7 @@ fn band(u: &[f64], lower: bool) -> Option<Vec<f64>> {
     if n < 16 || !(size > 0.0) {
         return None;
     }
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, back) = (planner.plan_fft_forward(n), planner.plan_fft_inverse(n));
+    let (forward, back) = (fourier::forward(n), fourier::inverse(n));
     let mut time: Vec<f64> = u.iter().map(|v| v - centre).collect();
     let mut lines = forward.make_output_vec();
     forward.process(&mut time, &mut lines).ok()?;

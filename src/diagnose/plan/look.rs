@@ -11,11 +11,11 @@ use crate::fit::problem::{Grain, Job, Model, Part, Problem, Span};
 use crate::statistics::{add_to_basis, dot, project};
 use crate::system::Track;
 
-/// A cause at the knobs and of the size by which its effect is looked at.
+/// A cause at the parameters and of the size by which its effect is looked at.
 #[derive(Debug, Clone)]
 pub(super) struct Asked {
     pub cause: Arc<Candidate>,
-    pub knobs: Vec<f64>,
+    pub parameters: Vec<f64>,
     pub blend: f64,
     /// What effects are divided by; `None` where no size shows.
     pub size: Option<f64>,
@@ -114,7 +114,7 @@ fn jobs(problem: &Problem<'_>, start: &Model, asked: &[Asked]) -> Vec<Option<Job
     let mut sharing = Sharing { problem, model: start, kinds: vec![], grain: Grain::Coarse };
     let job = |asked: &Asked| {
         asked.size?;
-        sharing.job(&asked.cause, &asked.knobs, asked.blend)
+        sharing.job(&asked.cause, &asked.parameters, asked.blend)
     };
     asked.iter().map(job).collect()
 }

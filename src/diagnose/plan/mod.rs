@@ -100,7 +100,7 @@ impl<'a> Planner<'a> {
         if let Some(name) = self.allowed.fixed.iter().find(|name| !known.contains(name)) {
             return Err(DiagnoseError::NoParameter { name: name.clone(), known });
         }
-        watch.tell(0.0, "following the model along the record");
+        watch.report(0.0, "following the model along the record");
         let parts = windows(records);
         let mut prepared = Prepared::new(self.system, parts.as_deref().unwrap_or(records), 1.0)?;
         let source = records.first().map_or_else(String::new, |r| r.source.clone());
@@ -109,10 +109,10 @@ impl<'a> Planner<'a> {
         for (scale, floor) in prepared.problem.scale.iter_mut().zip(&noise) {
             *scale = floor.std;
         }
-        watch.tell(0.1, "looking at every cause");
+        watch.report(0.1, "looking at every cause");
         let planning = planning::Planning { prepared: &prepared, noise: &noise, watch };
         let found = planning.look(&self.allowed).ok_or_else(diverges)?;
-        watch.tell(1.0, "done");
+        watch.report(1.0, "done");
         Ok(found)
     }
 }

@@ -64,7 +64,8 @@ pub struct LookAlikes {
     /// the noise does; 10 are needed.
     pub separation: f64,
     /// Names of the experiments that tell them apart.
-    pub told_apart_by: Vec<String>,
+    #[serde(rename = "told_apart_by")]
+    pub distinguished_by: Vec<String>,
     /// Whether no experiment with these inputs and sensors tells them apart: small effects of the
     /// two are one and the same, to rounding, in the record and in every experiment simulated.
     pub twins: bool,
@@ -78,9 +79,11 @@ pub struct Experiment {
     /// What is to be done.
     pub description: String,
     /// Look-alikes that it tells apart, of those that are alike with parameters trusted.
-    pub tells_apart: usize,
+    #[serde(rename = "tells_apart")]
+    pub distinguishes: usize,
     /// And of those that are alike only where parameters are free.
-    pub tells_apart_free: usize,
+    #[serde(rename = "tells_apart_free")]
+    pub distinguishes_free: usize,
     /// Causes that the record does not show and this does.
     pub also_shows: Vec<Supposed>,
     /// Why it could not be simulated, if it could not.
@@ -161,13 +164,13 @@ impl Outlook {
             .filter(|pair| pair.causes.iter().all(|cause| set.contains(&cause)))
             .collect();
         let count = |e: &Experiment| {
-            inside.iter().filter(|pair| pair.told_apart_by.contains(&e.name)).count()
+            inside.iter().filter(|pair| pair.distinguished_by.contains(&e.name)).count()
         };
         let mut best: Option<(&str, usize, usize)> = None;
         for experiment in &self.experiments {
-            let told = count(experiment);
-            if told > best.map_or(0, |(_, most, _)| most) {
-                best = Some((&experiment.name, told, inside.len()));
+            let number = count(experiment);
+            if number > best.map_or(0, |(_, most, _)| most) {
+                best = Some((&experiment.name, number, inside.len()));
             }
         }
         best

@@ -55,7 +55,7 @@ impl Planning<'_, '_> {
         };
         let visible: Vec<bool> = (0..causes.len()).map(|i| shows(&causes[i], &held, i)).collect();
         let pairs = self.pairs((&held, &moved), &sizes, &visible, &is_free);
-        let mut told: Vec<Vec<String>> = vec![vec![]; pairs.len()];
+        let mut by: Vec<Vec<String>> = vec![vec![]; pairs.len()];
         // one and the same: not for the record alone, but under every input that is tried
         let mut twins: Vec<bool> = pairs.iter().map(|pair| pair.3 >= TWINS).collect();
         let mut experiments = vec![];
@@ -65,8 +65,8 @@ impl Planning<'_, '_> {
                 experiments.push(Experiment {
                     name: name.into(),
                     description: description.into(),
-                    tells_apart: 0,
-                    tells_apart_free: 0,
+                    distinguishes: 0,
+                    distinguishes_free: 0,
                     also_shows: vec![],
                     failed,
                 });
@@ -74,12 +74,12 @@ impl Planning<'_, '_> {
             };
             let (held, moved) = (look.left(&look.trusted), look.left(&look.free));
             let mut count = [0, 0];
-            let of_pairs = told.iter_mut().zip(&mut twins).zip(&pairs);
-            for ((told, twins), &(i, j, track, ..)) in of_pairs {
+            let of_pairs = by.iter_mut().zip(&mut twins).zip(&pairs);
+            for ((by, twins), &(i, j, track, ..)) in of_pairs {
                 let left = if track == Track::ParametersTrusted { &held } else { &moved };
                 *twins &= is_sensor || left.rho(i, j) >= TWINS;
                 if left.rho(i, j) <= ALIKE && left.separation(i, j, &sizes) >= ENOUGH {
-                    told.push(name.into());
+                    by.push(name.into());
                     count[usize::from(track == Track::ParametersFree)] += 1;
                 }
             }
@@ -87,8 +87,8 @@ impl Planning<'_, '_> {
             experiments.push(Experiment {
                 name: name.into(),
                 description: description.into(),
-                tells_apart: count[0],
-                tells_apart_free: count[1],
+                distinguishes: count[0],
+                distinguishes_free: count[1],
                 also_shows: also.map(|i| supposed(&causes[i])).collect(),
                 failed: None,
             });
@@ -97,12 +97,12 @@ impl Planning<'_, '_> {
             if self.watch.stopped() {
                 break;
             }
-            self.watch.tell(0.3 + 0.1 * i as f64, &format!("simulating: {}", other.name));
+            self.watch.report(0.3 + 0.1 * i as f64, &format!("simulating: {}", other.name));
             let look = self.under(other.drive, &asked, nuisance);
             judge(&other.name, &other.description, look, false);
         }
         let sensors = if self.watch.stopped() { vec![] } else { self.sensors() };
-        self.watch.tell(0.8, "simulating further sensors");
+        self.watch.report(0.8, "simulating further sensors");
         if let Some(looks) = with_sensors(problem, start, &asked, nuisance, &sensors) {
             for (sensor, look) in sensors.iter().zip(looks) {
                 let unit = if sensor.unit.is_empty() { "" } else { " " };
@@ -115,15 +115,14 @@ impl Planning<'_, '_> {
             }
         }
         experiments.sort_by_key(|e| {
-            std::cmp::Reverse((e.tells_apart, e.tells_apart_free, e.also_shows.len()))
+            std::cmp::Reverse((e.distinguishes, e.distinguishes_free, e.also_shows.len()))
         });
         let names = problem.base.signals.outputs.iter().map(|s| s.name.clone());
-        let look_alikes =
-            pairs.iter().zip(told.into_iter().zip(twins)).map(|(pair, (told, twins))| {
-                let &(i, j, track, rho, separation) = pair;
-                let causes = [supposed(&causes[i]), supposed(&causes[j])];
-                LookAlikes { causes, track, rho, separation, told_apart_by: told, twins }
-            });
+        let look_alikes = pairs.iter().zip(by.into_iter().zip(twins)).map(|(pair, (by, twins))| {
+            let &(i, j, track, rho, separation) = pair;
+            let causes = [supposed(&causes[i]), supposed(&causes[j])];
+            LookAlikes { causes, track, rho, separation, distinguished_by: by, twins }
+        });
         Some(Outlook {
             schema: 1,
             samples: problem.samples(Part::Fit).count(),
@@ -147,9 +146,9 @@ impl Planning<'_, '_> {
     ) -> Vec<Pair> {
         let mut pairs: Vec<Pair> = vec![];
         // what would not show is not taken for anything
-        let shown: Vec<usize> = (0..visible.len()).filter(|&i| visible[i]).collect();
-        for (count, &j) in shown.iter().enumerate() {
-            for &i in &shown[..count] {
+        let seen: Vec<usize> = (0..visible.len()).filter(|&i| visible[i]).collect();
+        for (count, &j) in seen.iter().enumerate() {
+            for &i in &seen[..count] {
                 // what is too weak to show is no look-alike of everything
                 let is_strong = |left: &Left| left.strength(i, j, sizes) >= ENOUGH;
                 let alike = |left: &Left| {

@@ -39,7 +39,7 @@ pub(super) fn visibility(
     // a share of a short delay is a shorter one
     let by = match cause.card.mechanism {
         _ if !cause.blended() => Some(1.0),
-        Mechanism::Delay | Mechanism::Lag => first.map(|k| asked.knobs[k]),
+        Mechanism::Delay | Mechanism::Lag => first.map(|k| asked.parameters[k]),
         _ => None,
     };
     let smallest = |left: &Left| {
@@ -47,18 +47,20 @@ pub(super) fn visibility(
         (left.after[i] > 0.0 && size.is_finite()).then_some(size)
     };
     let (of_into, of_of) = (&cause.units.0, &cause.units.1);
-    let shapes = cause.refine.iter().filter(|&&k| asked.knobs[k].is_finite());
+    let shapes = cause.refine.iter().filter(|&&k| asked.parameters[k].is_finite());
     Visibility {
         cause: supposed(cause),
         same_as: cause.twins.iter().map(|(into, ..)| into.clone()).collect(),
-        shape: shapes.map(|&k| (cause.card.knobs[k].name.to_string(), asked.knobs[k])).collect(),
+        shape: shapes
+            .map(|&k| (cause.card.parameters[k].name.to_string(), asked.parameters[k]))
+            .collect(),
         visible,
         smallest_visible: smallest(held),
         smallest_visible_free: smallest(moved).filter(|_| !is_free),
         unit: match (&cause.wire, first) {
             (Wire::Parameter(_), _) => of_into.clone(),
             (Wire::Drift(_), _) => format!("{of_into}/s"),
-            (_, Some(k)) => cause.card.knobs[k].unit.text(of_into, of_of),
+            (_, Some(k)) => cause.card.parameters[k].unit.text(of_into, of_of),
             _ => String::new(),
         },
         kappa: (!is_free && !matches!(cause.wire, Wire::Parameter(_)) && moved.before[i] > 0.0)

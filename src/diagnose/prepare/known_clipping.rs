@@ -116,8 +116,8 @@ pub(crate) fn limited(
             continue;
         }
         let candidates = library(problem, nominal, &model, vec![], allowed);
-        if let Some((cause, knobs)) = known_limits(&candidates, &signal.name, at) {
-            model = model.with(&cause, knobs);
+        if let Some((cause, parameters)) = known_limits(&candidates, &signal.name, at) {
+            model = model.with(&cause, parameters);
         }
     }
     model

@@ -38,7 +38,7 @@ pub(crate) fn spikes(r: &[f64], known: &[bool]) -> Vec<bool> {
     }
     let centre = median(&values);
     let far: Vec<f64> = r.iter().map(|v| (v - centre).abs()).collect();
-    let alone: Vec<f64> = (0..r.len())
+    let single: Vec<f64> = (0..r.len())
         .map(|k| {
             let neighbours: Vec<f64> = [k.checked_sub(1), Some(k + 1)]
                 .into_iter()
@@ -54,9 +54,9 @@ pub(crate) fn spikes(r: &[f64], known: &[bool]) -> Vec<bool> {
         let kept: Vec<f64> = x.iter().zip(known).filter(|(_, k)| **k).map(|(v, _)| *v).collect();
         1.4826 * median(&kept)
     };
-    let (scale_far, scale_alone) = (of_known(&far), of_known(&alone));
+    let (scale_far, scale_single) = (of_known(&far), of_known(&single));
     (0..r.len())
-        .map(|k| known[k] && far[k] > BEYOND * scale_far && alone[k] > BEYOND * scale_alone)
+        .map(|k| known[k] && far[k] > BEYOND * scale_far && single[k] > BEYOND * scale_single)
         .collect()
 }
 

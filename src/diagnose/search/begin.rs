@@ -34,12 +34,14 @@ pub(super) fn begun(
         let mut tried: Vec<Vec<(usize, Vec<f64>)>> = vec![];
         for (m, model) in moves.iter().zip(&models) {
             let mut own = vec![];
-            for knobs in m.new.get(nth).map_or(vec![], |(i, sizes)| points(&items[*i], sizes, far))
+            for parameters in
+                m.new.get(nth).map_or(vec![], |(i, sizes)| points(&items[*i], sizes, far))
             {
                 let cause = &items[m.new[nth].0].cause;
-                if let Some(job) = with_candidate(problem, model, cause, &knobs, 1.0, Grain::Coarse)
+                if let Some(job) =
+                    with_candidate(problem, model, cause, &parameters, 1.0, Grain::Coarse)
                 {
-                    own.push((jobs.len(), knobs));
+                    own.push((jobs.len(), parameters));
                     jobs.push(job);
                 }
             }
@@ -72,20 +74,20 @@ pub(super) fn begun(
             let best = own.into_iter().min_by(|a, b| sums[a.0].total_cmp(&sums[b.0]));
             let Some((item, sizes)) = m.new.get(nth) else { continue };
             let item = &items[*item];
-            let knobs = best.map_or_else(|| sized(item, sizes), |(_, knobs)| knobs);
-            *model = model.with(&item.cause, knobs);
+            let parameters = best.map_or_else(|| sized(item, sizes), |(_, parameters)| parameters);
+            *model = model.with(&item.cause, parameters);
         }
     }
     models
 }
 
-/// Knobs as the dictionary says.
+/// Parameters as the dictionary says.
 fn sized(item: &Item, sizes: &[f64]) -> Vec<f64> {
     let start = &item.cause.starts[item.start];
     if item.cause.blended() { start.clone() } else { item.cause.sized(start, sizes) }
 }
 
-/// Knobs that are tried.
+/// Parameters that are tried.
 fn points(item: &Item, sizes: &[f64], far: bool) -> Vec<Vec<f64>> {
     let cause = &item.cause;
     let own = sized(item, sizes);

@@ -70,7 +70,7 @@ pub(super) fn chain(study: &mut Study<'_, '_>, free: bool, rounds: Range<usize>)
         }
         let Some(best) = study.beam.best_of(free).cloned() else { return };
         if round > 0 {
-            study.watch.tell(0.1 + 0.8 * round as f64 / ROUNDS as f64, "looking for more");
+            study.watch.report(0.1 + 0.8 * round as f64 / ROUNDS as f64, "looking for more");
         }
         let key = best.key();
         let last = before.as_ref() == Some(&key);

@@ -15,7 +15,7 @@ const STEP: f64 = 2e-3;
 fn lessened(problem: &Problem<'_>, model: &Model, index: usize) -> Option<Job> {
     let mut less = model.clone();
     for &k in &model.added[index].cause.linear {
-        less.added[index].knobs[k] *= 1.0 - LESS;
+        less.added[index].parameters[k] *= 1.0 - LESS;
     }
     let mut job = problem.job(&less, Grain::Coarse)?;
     if model.added[index].cause.blended() {
@@ -64,7 +64,7 @@ pub(super) fn tangents(
             if unknown.bounds.1 - unknown.start < step { -step } else { step }
         })
         .collect();
-    let alone: Vec<Vec<f64>> = steps
+    let moved: Vec<Vec<f64>> = steps
         .iter()
         .enumerate()
         .map(|(j, step)| {
@@ -79,7 +79,7 @@ pub(super) fn tangents(
         keys.iter().zip(point).for_each(|(&key, &value)| set(&mut moved, key, value));
         problem.job(&moved, Grain::Coarse)
     };
-    let jobs: Vec<Option<Job>> = blocks.points(&at, &alone).iter().map(job).collect();
+    let jobs: Vec<Option<Job>> = blocks.points(&at, &moved).iter().map(job).collect();
     let answers = problem
         .run_built(&jobs, Span::Fit)
         .into_iter()

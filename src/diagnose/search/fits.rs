@@ -94,7 +94,7 @@ impl Judge<'_, '_> {
     fn expected(&self, model: &Model, keys: &[Key]) -> f64 {
         let one = |&key: &Key| {
             let prior = match key {
-                Key::Knob(..) => None,
+                Key::EffectParameter(..) => None,
                 _ => self.nuisance.unknown(self.problem, model, key).prior,
             };
             prior

@@ -15,7 +15,7 @@ pub(crate) fn candidate(into: &str) -> Candidate {
     let (_, shape) =
         register::effects().into_iter().find(|(card, _)| card.name == "cubic").unwrap();
     let card = shape.card();
-    let count = card.knobs.len();
+    let count = card.parameters.len();
     Candidate {
         effect: "cubic",
         shape: shape.boxed(),
@@ -48,8 +48,8 @@ pub(crate) fn fit_of(into: &[&str], residual: Vec<f64>) -> Fit {
     let mut model = Model { theta: vec![], starts: vec![], added: vec![] };
     for into in into {
         let cause = Arc::new(candidate(into));
-        let knobs = cause.starts[0].clone();
-        model = model.with(&cause, knobs);
+        let parameters = cause.starts[0].clone();
+        model = model.with(&cause, parameters);
     }
     let noise = Stretches::of_lengths(&[residual.len()]).white(&residual);
     Fit { model, free: false, noise, residual, likelihood: 0.0, occam: 0.0, prior: 0.0 }

@@ -59,7 +59,7 @@ pub(super) fn laws_of_places(study: &mut Study<'_, '_>, free: bool, asked: &mut 
 
 /// Each law of the library in the place of some laws, which are first drawn as a curve.
 fn one_place(study: &mut Study<'_, '_>, best: &Fit, own: &[usize], drawn: bool) -> Option<()> {
-    study.watch.tell(0.7, "asking places for their laws");
+    study.watch.report(0.7, "asking places for their laws");
     if let Some(fit) = drawn.then(|| free_curve(study, best, own)).flatten() {
         return read_as_laws(study, &fit, best.posterior());
     }
@@ -77,7 +77,7 @@ pub(super) fn read_as_laws(study: &mut Study<'_, '_>, drawn: &Fit, top: f64) -> 
     let at = drawn.model.added.len().checked_sub(1)?;
     let curved = &drawn.model.added[at];
     let z = coordinate(study, &drawn.model, &curved.cause)?;
-    let w = curve(curved.cause.shape.as_ref(), &curved.knobs, &z);
+    let w = curve(curved.cause.shape.as_ref(), &curved.parameters, &z);
     let rest = Fit { model: drawn.model.without(at), ..drawn.clone() };
     fit_laws(study, &rest, &curved.cause, (&z, &w), top);
     Some(())
@@ -99,8 +99,11 @@ fn fit_laws(
 ) {
     let mut wishes = vec![];
     for cause in study.candidates.iter().filter(|c| c.is_at(here) && c.is_curve()) {
-        for (knobs, _) in hills(cause, z, w).into_iter().take(HILLS) {
-            wishes.push(Wish { model: rest.model.with(cause, knobs), noise: rest.noise.clone() });
+        for (parameters, _) in hills(cause, z, w).into_iter().take(HILLS) {
+            wishes.push(Wish {
+                model: rest.model.with(cause, parameters),
+                noise: rest.noise.clone(),
+            });
         }
     }
     // a curve is fitted to its end: so are the laws that are compared with it, also from other initial

@@ -33,7 +33,7 @@ pub(super) struct Metric {
 /// A target with what is free beside it.
 pub(super) struct Question<'a> {
     pub target: Vec<f64>,
-    pub beside: Vec<Vec<f64>>,
+    pub nuisance: Vec<Vec<f64>>,
     /// What a cause takes, as a logarithm.
     pub price: &'a (dyn Fn(&Item) -> f64 + Sync),
     /// Logarithm of the prior of what stays.
@@ -100,7 +100,7 @@ impl Metric {
         wanted: (usize, usize),
     ) -> Answers {
         let mut basis: Vec<Vec<f64>> = vec![];
-        question.beside.iter().for_each(|c| add_to_basis(&mut basis, c.clone()));
+        question.nuisance.iter().for_each(|c| add_to_basis(&mut basis, c.clone()));
         let mut target = question.target.clone();
         project(&basis, &mut target);
         let along = self.columns.par_iter().map(|c| basis.iter().map(|q| dot(q, c)).collect());
@@ -265,12 +265,12 @@ impl Solved<'_> {
             names.sort();
             names
         };
-        let told = |(predicted, i, j): (f64, usize, usize)| {
+        let scored = |(predicted, i, j): (f64, usize, usize)| {
             let (_, x) = self.solve(&self.columns_of(&[i, j]), &by_z)?;
             Some(self.answered(&[i, j], &x, predicted))
         };
         let distinct = best.into_iter().filter(|&(_, i, j)| seen.insert(names(i, j)));
-        distinct.filter_map(told).take(wanted).collect()
+        distinct.filter_map(scored).take(wanted).collect()
     }
 }
 

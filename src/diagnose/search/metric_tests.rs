@@ -36,7 +36,7 @@ fn a_pair_is_found_that_no_single_one_shows() {
     let target: Vec<f64> = (0..n).map(|k| 5.0 * a[k] + 5.0 * b[k] + 0.05 * noise[k]).collect();
     let metric = Metric::new(&items, |c| c.to_vec());
     let price = |_: &Item| 9.0;
-    let question = Question { target, beside: vec![], price: &price, worth: 0.0 };
+    let question = Question { target, nuisance: vec![], price: &price, worth: 0.0 };
     let found = metric.answer(&items, &question, (5, 5));
     let best = &found.pairs[0];
     let mut names: Vec<usize> = best.new.iter().map(|n| n.0).collect();
@@ -50,22 +50,22 @@ fn a_pair_is_found_that_no_single_one_shows() {
 }
 
 #[test]
-fn what_is_free_beside_explains_first_and_signs_hold() {
+fn the_nuisance_explains_first_and_signs_hold() {
     let n = 300;
     let mut items = items(n, 4);
     let free = series(n, 50);
     let target: Vec<f64> = (0..n).map(|k| 3.0 * free[k] - 2.0 * items[1].columns[0][k]).collect();
     let metric = Metric::new(&items, |c| c.to_vec());
     let price = |_: &Item| 9.0;
-    let beside = vec![free];
+    let nuisance = vec![free];
     let question =
-        Question { target: target.clone(), beside: beside.clone(), price: &price, worth: 0.0 };
+        Question { target: target.clone(), nuisance: nuisance.clone(), price: &price, worth: 0.0 };
     let found = metric.answer(&items, &question, (4, 0));
     assert_eq!(found.single[0].new[0].0, 1);
     assert!((found.single[0].new[0].1[0] + 2.0).abs() < 1e-6);
     // where it must be positive it is no answer
     items[1].sign = 1.0;
-    let question = Question { target, beside, price: &price, worth: 0.0 };
+    let question = Question { target, nuisance, price: &price, worth: 0.0 };
     let found = metric.answer(&items, &question, (4, 0));
     assert!(found.single.iter().all(|answer| answer.new[0].0 != 1));
     assert_eq!(found.by_size[0], 1);

@@ -145,13 +145,13 @@ impl Standing<'_> {
         for share in out.iter().filter_map(|&i| self.contributions[i].as_ref()) {
             target.iter_mut().zip(share).for_each(|(t, s)| *t += s);
         }
-        let beside = self.tangents.iter().filter(|(key, _)| match key {
-            Key::Knob(a, _) => !out.contains(a),
+        let nuisance = self.tangents.iter().filter(|(key, _)| match key {
+            Key::EffectParameter(a, _) => !out.contains(a),
             _ => true,
         });
         Question {
             target: noise.whiten(&target),
-            beside: beside.map(|(_, c)| noise.whiten(c)).collect(),
+            nuisance: nuisance.map(|(_, c)| noise.whiten(c)).collect(),
             price,
             worth,
         }

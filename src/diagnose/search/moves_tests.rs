@@ -38,7 +38,7 @@ fn a_compromise_gives_way_to_the_two_that_it_stands_for() {
     let mut items = vec![item(0, "a", a), item(1, "b", b), item(2, "sum", sum.clone())];
     items.extend((3..23).map(|i| item(i, &format!("nothing_{i}"), series(100 + i as u64))));
     let fit = fit_of(&["sum"], residual);
-    let tangents = [(Key::Knob(0, 0), sum)];
+    let tangents = [(Key::EffectParameter(0, 0), sum)];
     let contributions = [Some(present)];
     let standing = Standing {
         fit: &fit,

@@ -49,14 +49,14 @@ pub(super) fn nameless(study: &mut Study<'_, '_>) {
             || study.dependence(&best.model) > DEPENDS
     };
     if curve || hidden(study, &best) {
-        study.watch.tell(0.9, "drawing free curves");
+        study.watch.report(0.9, "drawing free curves");
         for base in bases(study, &best) {
             curves(study, &base, best.posterior());
         }
     }
     let Some(best) = study.beam.best().cloned() else { return };
     if (law || hidden(study, &best)) && study.allowed.effect(free_surface::NAME) {
-        study.watch.tell(0.93, "learning a law");
+        study.watch.report(0.93, "learning a law");
         for base in bases(study, &best) {
             learned(study, &base);
         }
@@ -155,10 +155,10 @@ fn by_its_name(study: &mut Study<'_, '_>, base: &Fit, learned: &Fit) {
         .flat_map(|cause| {
             let size = vec![cause.probe; cause.linear.len().max(1)];
             let points = starts::points(cause, 0, &size, cause.probe, None);
-            points.into_iter().map(move |knobs| (cause, knobs))
+            points.into_iter().map(move |parameters| (cause, parameters))
         })
-        .map(|(cause, knobs)| Wish {
-            model: base.model.with(cause, knobs),
+        .map(|(cause, parameters)| Wish {
+            model: base.model.with(cause, parameters),
             noise: base.noise.clone(),
         })
         .collect();

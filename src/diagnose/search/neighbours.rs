@@ -55,14 +55,14 @@ pub(super) fn neighbours(
             return *count <= most;
         }
         let old = place(first);
-        let beside = old.into == new.into;
-        if beside && old.of == new.of {
+        let same_target = old.into == new.into;
+        if same_target && old.of == new.of {
             // laws that are curves are asked for from the curve of their place
             return !(old.is_curve() && new.is_curve());
         }
         // the same law elsewhere (a delay of an input, of an output) is foretold badly by a tangent
         let same = old.effect == new.effect;
-        let kin = beside || same;
+        let kin = same_target || same;
         if !(same || m.gain > -NEIGHBOUR || kin && m.gain > -NEAR_NEIGHBOUR) {
             return false;
         }

@@ -52,7 +52,7 @@ pub(crate) fn search(
     start: &Model,
     watch: &dyn Watch,
 ) -> Option<Searched> {
-    watch.tell(0.0, "simulating the baseline");
+    watch.report(0.0, "simulating the baseline");
     if let Some(y) = problem.simulate(start, Grain::Coarse) {
         problem.flag_spikes(&y);
     }
@@ -66,7 +66,7 @@ pub(crate) fn search(
     study.stand_on(&first.model);
     let mut screen = None;
     if most > 0 {
-        watch.tell(0.05, "screening candidates");
+        watch.report(0.05, "screening candidates");
         chain(&mut study, false, 0..1);
         screen = screened(&study, &first);
         families(&mut study);
@@ -79,7 +79,7 @@ pub(crate) fn search(
             searched(&mut study, key.free, 1);
         }
     }
-    watch.tell(0.95, "checking what was named");
+    watch.report(0.95, "checking what was named");
     study.settle(SETTLED.0, SETTLED.1);
     concluded(study, screen)
 }
@@ -143,7 +143,7 @@ fn free_chain(study: &mut Study<'_, '_>) {
     if study.watch.stopped() {
         return;
     }
-    study.watch.tell(0.5, "letting parameters move");
+    study.watch.report(0.5, "letting parameters move");
     if let Some(model) = study.beam.best_of(true).map(|fit| fit.model.clone()) {
         study.stand_on(&model);
     }

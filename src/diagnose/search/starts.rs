@@ -5,7 +5,7 @@ use crate::candidates::candidate::Candidate;
 /// From one size to the next.
 pub(crate) const RUNG: f64 = 2.5;
 
-/// Starting knobs for a fit of one candidate: its coefficients as estimated at one of its grid starts
+/// Starting parameters for a fit of one candidate: its coefficients as estimated at one of its grid starts
 /// and smaller, its thresholds and sizes over their ranges where a line says little of them.
 pub(crate) fn points(
     cause: &Candidate,
@@ -16,12 +16,12 @@ pub(crate) fn points(
 ) -> Vec<Vec<f64>> {
     let mut points = vec![];
     if cause.blended() || cause.thresholds && cause.linear.len() == 1 {
-        for knobs in thresholds(cause) {
+        for parameters in thresholds(cause) {
             if cause.blended() {
-                points.push(knobs);
+                points.push(parameters);
             } else {
                 for factor in [1.0, 0.4] {
-                    points.push(cause.sized(&knobs, &[factor * estimate[0]]));
+                    points.push(cause.sized(&parameters, &[factor * estimate[0]]));
                 }
             }
         }
@@ -48,8 +48,8 @@ pub(crate) fn points(
 
 /// Sizes from a small effect upwards, of every sign allowed.
 pub(crate) fn ladder(cause: &Candidate, probe: f64, rungs: i32) -> Vec<f64> {
-    let knob = cause.linear[0];
-    let (min, max) = cause.bounds(knob);
+    let parameter = cause.linear[0];
+    let (min, max) = cause.bounds(parameter);
     let smallest = 0.4 * probe.abs();
     let signs: &[f64] = match cause.sign {
         s if s > 0.0 => &[1.0],
@@ -76,7 +76,7 @@ pub(crate) fn thresholds(cause: &Candidate) -> Vec<Vec<f64>> {
     let symmetric = cause.refine.len() == 2 && start[cause.refine[0]] < 0.0;
     let Some(&last) = cause.refine.last() else { return vec![start.clone()] };
     let (low, high) = span(last);
-    let positive = symmetric || cause.card.knobs[last].min >= 0.0;
+    let positive = symmetric || cause.card.parameters[last].min >= 0.0;
     for i in 0..12 {
         let share = f64::from(i) / 11.0;
         let value = if positive {
@@ -86,12 +86,12 @@ pub(crate) fn thresholds(cause: &Candidate) -> Vec<Vec<f64>> {
         } else {
             low + (high - low) * (0.02 + 0.96 * share)
         };
-        let mut knobs = start.clone();
-        knobs[last] = value;
+        let mut parameters = start.clone();
+        parameters[last] = value;
         if symmetric {
-            knobs[cause.refine[0]] = -value;
+            parameters[cause.refine[0]] = -value;
         }
-        grid.push(knobs);
+        grid.push(parameters);
     }
     grid
 }

@@ -72,8 +72,8 @@ impl Adequacy {
             if let Some(p) = moved {
                 theta[p] += step_of(theta[p]);
             }
-            let knobs = run.plan.knob_values();
-            Lane { theta, knobs, starts: starts.clone(), ..Lane::default() }
+            let effect_values = run.plan.effect_values();
+            Lane { theta, effect_values, starts: starts.clone(), ..Lane::default() }
         };
         let lanes: Vec<Lane> =
             std::iter::once(lane(None)).chain(free.iter().map(|&p| lane(Some(p)))).collect();
@@ -85,13 +85,13 @@ impl Adequacy {
             all.extend(own);
         }
         // every segment forgets its own start
-        let told =
+        let usable =
             |k: usize| run.drive.segments.iter().any(|s| (s.start + count..s.end).contains(&k));
         for o in 0..self.left.len() {
             let measured = run.measured[o].as_deref();
             for k in 0..record.len() {
                 let known = measured.map_or(f64::NAN, |y| y[k]);
-                let known = if told(k) { known } else { f64::NAN };
+                let known = if usable(k) { known } else { f64::NAN };
                 self.left[o].push(known - base.y[o][k]);
             }
             self.simulated[o].extend(&base.y[o]);

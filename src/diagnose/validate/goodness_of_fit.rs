@@ -74,11 +74,11 @@ impl Diagnosis<'_> {
         self.check_names()?;
         let thin = thinned(self.system, records, None, self.memory);
         let Some(thin) = thin else { return self.check_on(records, watch) };
-        let mut checked = self.check_on(&thin.records, watch)?;
-        let causes = checked.first_cause.iter_mut().chain(&mut checked.data_faults);
+        let mut outcome = self.check_on(&thin.records, watch)?;
+        let causes = outcome.first_cause.iter_mut().chain(&mut outcome.data_faults);
         causes.for_each(|cause| thin.place(cause));
-        checked.notes.insert(0, thin.note);
-        Ok(checked)
+        outcome.notes.insert(0, thin.note);
+        Ok(outcome)
     }
 
     /// The same on records that memory holds.

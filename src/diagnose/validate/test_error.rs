@@ -45,7 +45,7 @@ impl TestData {
             let from = self.first(r, &run);
             let starts = match &self.counted {
                 Counted::After(_) => run.starts(from),
-                Counted::From(_) => run.starts(telling(&run, from)),
+                Counted::From(_) => run.starts(informative(&run, from)),
                 Counted::All => run.starts_of_stretches(),
             };
             let track = run.track(starts);
@@ -165,7 +165,7 @@ impl TestData {
 
 /// How many of the samples before those that count find the start: where it is forgotten long
 /// before these, what comes after that tells nothing of it.
-fn telling(run: &Run<'_>, from: usize) -> usize {
+fn informative(run: &Run<'_>, from: usize) -> usize {
     let memory = run.memory(from).max(2 * run.plan.sizes.x);
     if run.drive.segments.len() == 1 && 2 * memory < from { memory } else { from }
 }

@@ -91,13 +91,13 @@ impl Fit<'_> {
     fn with_values(&self, point: &[f64]) -> Result<System, EvaluateError> {
         let first = &self.runs[0];
         let mut changes = vec![];
-        let mut knobs = first.plan.knob_values();
+        let mut effect_values = first.plan.effect_values();
         for (&key, &value) in self.keys.iter().zip(point) {
             match key {
                 Key::Theta(p) => {
                     changes.push((first.plan.signals.parameters[p].name.clone(), value));
                 }
-                Key::Knob(k) => knobs[k] = value,
+                Key::EffectParameter(k) => effect_values[k] = value,
                 Key::Start(..) => {}
             }
         }
@@ -114,7 +114,7 @@ impl Fit<'_> {
             let mut placed = placed.clone();
             let is_data = placed.effect.card().mechanism == crate::effect::Mechanism::Data;
             if let Some(slot) = (!is_data).then(|| slots.next()).flatten() {
-                let own = &knobs[slot.knobs..][..slot.card.knobs.len()];
+                let own = &effect_values[slot.first_parameter..][..slot.card.parameters.len()];
                 placed.effect = placed.effect.with_values(own).map_err(written)?;
             }
             effects.push(placed);

@@ -11,14 +11,14 @@ impl Fit<'_> {
         let run = &self.runs[r];
         let mut lane = Lane {
             theta: run.plan.signals.theta(),
-            knobs: run.plan.knob_values(),
+            effect_values: run.plan.effect_values(),
             starts: vec![run.plan.signals.initial(); run.drive.segments.len()],
             ..Lane::default()
         };
         for (&key, &value) in self.keys.iter().zip(point) {
             match key {
                 Key::Theta(p) => lane.theta[p] = value,
-                Key::Knob(k) => lane.knobs[k] = value,
+                Key::EffectParameter(k) => lane.effect_values[k] = value,
                 Key::Start(of, s, i) if of == r => lane.starts[s][i] = value,
                 Key::Start(..) => {}
             }

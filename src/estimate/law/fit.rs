@@ -16,43 +16,44 @@ pub(super) struct Fitted {
     pub parts: Vec<Part>,
     /// Sum of the squares that are left.
     pub squares: f64,
-    /// Ranges of the knobs, part by part.
+    /// Ranges of the parameters, part by part.
     ranges: Vec<Bounds>,
 }
 
 impl Fitted {
     /// Numbers that were fitted.
-    pub fn knobs(&self) -> usize {
+    pub fn parameters(&self) -> usize {
         self.parts.iter().map(|part| open(part.law.as_ref()).count()).sum()
     }
 }
 
-/// Knobs that are fitted: those that are numbers and choose nothing.
+/// Parameters that are fitted: those that are numbers and choose nothing.
 fn open(law: &dyn CandidateEffect) -> impl Iterator<Item = usize> {
-    let knobs = law.card().knobs;
-    let is = move |&i: &usize| knobs[i].role != Role::Choice && knobs[i].value.is_finite();
-    (0..law.card().knobs.len()).filter(is)
+    let parameters = law.card().parameters;
+    let is =
+        move |&i: &usize| parameters[i].role != Role::Choice && parameters[i].value.is_finite();
+    (0..law.card().parameters.len()).filter(is)
 }
 
-/// Knobs of a part that are fitted within a range: those that it does not hold at one value.
+/// Parameters of a part that are fitted within a range: those that it does not hold at one value.
 fn free<'a>(part: &'a Part, range: &'a Bounds) -> impl Iterator<Item = usize> + 'a {
     open(part.law.as_ref()).filter(|&i| range.lower[i] < range.upper[i])
 }
 
-/// A law at many coordinates, at one value of its knobs.
-fn values(law: &dyn CandidateEffect, knobs: &[f64], z: &[f64]) -> Vec<f64> {
+/// A law at many coordinates, at one value of its parameters.
+fn values(law: &dyn CandidateEffect, parameters: &[f64], z: &[f64]) -> Vec<f64> {
     let packs = z.len().div_ceil(F64x8::LANES);
     let mut coordinates = vec![F64x8::constant(0.0); packs];
     for (k, &value) in z.iter().enumerate() {
         coordinates[k / F64x8::LANES].set_lane(k % F64x8::LANES, value);
     }
-    let one = knobs.iter().map(|&value| F64x8::constant(value));
-    let knobs: Vec<F64x8> = (0..packs).flat_map(|_| one.clone()).collect();
+    let one = parameters.iter().map(|&value| F64x8::constant(value));
+    let parameters: Vec<F64x8> = (0..packs).flat_map(|_| one.clone()).collect();
     let rate = vec![F64x8::constant(0.0); packs];
     let (mut w, mut rates) = (rate.clone(), vec![]);
     let block = EffectBlock {
         packs,
-        knobs: &knobs,
+        parameters: &parameters,
         coordinates: &coordinates,
         rate: &rate,
         has_rate: false,
@@ -62,10 +63,10 @@ fn values(law: &dyn CandidateEffect, knobs: &[f64], z: &[f64]) -> Vec<f64> {
     (0..z.len()).map(|k| w[k / F64x8::LANES].lane(k % F64x8::LANES)).collect()
 }
 
-/// The knobs of a sum of laws against the pairs.
+/// The parameters of a sum of laws against the pairs.
 struct Sum<'a> {
     parts: &'a [Part],
-    /// Place of every fitted number: part and knob.
+    /// Place of every fitted number: part and parameter.
     places: Vec<(usize, usize)>,
     start: Vec<Vec<f64>>,
     bounds: Bounds,
@@ -75,16 +76,19 @@ struct Sum<'a> {
 }
 
 impl Sum<'_> {
-    fn knobs(&self, theta: &[f64]) -> Vec<Vec<f64>> {
-        let mut knobs = self.start.clone();
-        self.places.iter().zip(theta).for_each(|(&(part, knob), &value)| knobs[part][knob] = value);
-        knobs
+    fn parameters(&self, theta: &[f64]) -> Vec<Vec<f64>> {
+        let mut parameters = self.start.clone();
+        self.places
+            .iter()
+            .zip(theta)
+            .for_each(|(&(part, parameter), &value)| parameters[part][parameter] = value);
+        parameters
     }
 
-    fn left(&self, knobs: &[Vec<f64>]) -> Vec<f64> {
+    fn left(&self, parameters: &[Vec<f64>]) -> Vec<f64> {
         let mut left = self.w.to_vec();
-        for (part, knobs) in self.parts.iter().zip(knobs) {
-            let own = values(part.law.as_ref(), knobs, self.z);
+        for (part, parameters) in self.parts.iter().zip(parameters) {
+            let own = values(part.law.as_ref(), parameters, self.z);
             left.iter_mut().zip(own).for_each(|(left, own)| *left -= own);
         }
         left
@@ -98,7 +102,7 @@ impl LeastSquares for Sum<'_> {
 
     fn residuals(&self, points: &[Vec<f64>]) -> Vec<Option<Vec<f64>>> {
         let one = |theta: &Vec<f64>| {
-            let left = self.left(&self.knobs(theta));
+            let left = self.left(&self.parameters(theta));
             left.iter().all(|left| left.is_finite()).then_some(left)
         };
         points.iter().map(one).collect()
@@ -117,7 +121,7 @@ fn squares(values: &[f64]) -> f64 {
     values.iter().map(|value| value * value).sum()
 }
 
-/// Coefficients by linear regression, the other knobs being what they are.
+/// Coefficients by linear regression, the other parameters being what they are.
 fn regressed(
     parts: &[Part],
     start: &[Vec<f64>],
@@ -128,8 +132,8 @@ fn regressed(
     let mut places = vec![];
     let mut right = DVector::from_column_slice(w);
     for (number, ((part, start), range)) in parts.iter().zip(start).zip(ranges).enumerate() {
-        let knobs = part.law.card().knobs;
-        let coefficient = |i: &usize| knobs[*i].role == Role::Coefficient;
+        let parameters = part.law.card().parameters;
+        let coefficient = |i: &usize| parameters[*i].role == Role::Coefficient;
         let own: Vec<usize> = free(part, range).filter(coefficient).collect();
         // what held coefficients make is there already
         let mut held = start.clone();
@@ -137,27 +141,27 @@ fn regressed(
         right -= DVector::from_vec(values(part.law.as_ref(), &held, z));
         for i in own {
             let mut only = start.clone();
-            (0..knobs.len()).filter(coefficient).for_each(|j| only[j] = 0.0);
+            (0..parameters.len()).filter(coefficient).for_each(|j| only[j] = 0.0);
             only[i] = 1.0;
             columns.push(DVector::from_vec(values(part.law.as_ref(), &only, z)));
             places.push((number, i));
         }
     }
-    let mut knobs = start.to_vec();
+    let mut parameters = start.to_vec();
     if columns.is_empty() {
-        return Some(knobs);
+        return Some(parameters);
     }
     let a = DMatrix::from_columns(&columns);
     let scale: Vec<f64> = a.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
     let scaled = DMatrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)] / scale[j]);
     let found = scaled.svd(true, true).solve(&right, 1e-10).ok()?;
-    for ((&(part, knob), value), scale) in places.iter().zip(found.iter()).zip(&scale) {
-        knobs[part][knob] = value / scale;
+    for ((&(part, parameter), value), scale) in places.iter().zip(found.iter()).zip(&scale) {
+        parameters[part][parameter] = value / scale;
     }
-    Some(knobs)
+    Some(parameters)
 }
 
-/// Fits all knobs of a sum from one start.
+/// Fits all parameters of a sum from one start.
 fn fitted(
     parts: &[Part],
     start: &[Vec<f64>],
@@ -167,16 +171,18 @@ fn fitted(
 ) -> Option<(Vec<Vec<f64>>, f64)> {
     let start = regressed(parts, start, ranges, (z, w))?;
     let places: Vec<(usize, usize)> = (parts.iter().zip(ranges).enumerate())
-        .flat_map(|(number, (part, range))| free(part, range).map(move |knob| (number, knob)))
+        .flat_map(|(number, (part, range))| {
+            free(part, range).map(move |parameter| (number, parameter))
+        })
         .collect();
     let of = |from: &dyn Fn(usize, usize) -> f64| {
-        places.iter().map(|&(part, knob)| from(part, knob)).collect::<Vec<f64>>()
+        places.iter().map(|&(part, parameter)| from(part, parameter)).collect::<Vec<f64>>()
     };
     let bounds = Bounds {
-        lower: of(&|part, knob| ranges[part].lower[knob]),
-        upper: of(&|part, knob| ranges[part].upper[knob]),
+        lower: of(&|part, parameter| ranges[part].lower[parameter]),
+        upper: of(&|part, parameter| ranges[part].upper[parameter]),
     };
-    let mut theta = of(&|part, knob| start[part][knob]);
+    let mut theta = of(&|part, parameter| start[part][parameter]);
     for (value, (low, high)) in theta.iter_mut().zip(bounds.lower.iter().zip(&bounds.upper)) {
         *value = value.max(*low).min(*high);
     }
@@ -185,15 +191,15 @@ fn fitted(
     if !theta.is_empty() {
         LevenbergMarquardt::default().fit(&sum, &mut theta, &mut ()).ok()?;
     }
-    let knobs = sum.knobs(&theta);
-    let left = squares(&sum.left(&knobs));
-    left.is_finite().then_some((knobs, left))
+    let parameters = sum.parameters(&theta);
+    let left = squares(&sum.left(&parameters));
+    left.is_finite().then_some((parameters, left))
 }
 
-/// The parts with other knobs.
-fn with(parts: &[Part], knobs: &[Vec<f64>]) -> Option<Vec<Part>> {
-    let each = parts.iter().zip(knobs).map(|(part, knobs)| {
-        let law = part.law.with_values(knobs).ok()?;
+/// The parts with other parameters.
+fn with(parts: &[Part], parameters: &[Vec<f64>]) -> Option<Vec<Part>> {
+    let each = parts.iter().zip(parameters).map(|(part, parameters)| {
+        let law = part.law.with_values(parameters).ok()?;
         Some(Part { effect: part.effect.clone(), law })
     });
     each.collect()
@@ -212,8 +218,8 @@ pub(super) fn one(
     let parts = vec![Part { effect: name.into(), law: law.boxed() }];
     let each = search.starts.into_iter();
     let each = each.filter_map(|start| fitted(&parts, &[start], &ranges, z, w));
-    let (knobs, squares) = each.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some(Fitted { parts: with(&parts, &knobs)?, squares, ranges })
+    let (parameters, squares) = each.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some(Fitted { parts: with(&parts, &parameters)?, squares, ranges })
 }
 
 /// The sum of two laws, from where each was best alone.
@@ -221,8 +227,8 @@ pub(super) fn two(first: &Fitted, second: &Fitted, z: &[f64], w: &[f64]) -> Opti
     let parts = [&first.parts[..], &second.parts[..]].concat();
     let ranges: Vec<Bounds> = first.ranges.iter().chain(&second.ranges).cloned().collect();
     let start: Vec<Vec<f64>> = parts.iter().map(|part| part.law.card().values()).collect();
-    let (knobs, squares) = fitted(&parts, &start, &ranges, z, w)?;
-    Some(Fitted { parts: with(&parts, &knobs)?, squares, ranges })
+    let (parameters, squares) = fitted(&parts, &start, &ranges, z, w)?;
+    Some(Fitted { parts: with(&parts, &parameters)?, squares, ranges })
 }
 
 /// Squares that are left by straight lines between knots that lie as densely as the data.
@@ -245,7 +251,7 @@ pub(super) fn drawn(curve: &[Drawn], knots: usize, z: &[f64], w: &[f64]) -> Opti
     Some((right - a * found).norm_squared())
 }
 
-/// One law from each of these starts: all knobs where they meet the pairs best and the sum of the
+/// One law from each of these starts: all parameters where they meet the pairs best and the sum of the
 /// squares that is left, best first; starts that lead to the same are one.
 pub(super) fn each(
     law: &dyn CandidateEffect,
@@ -259,7 +265,7 @@ pub(super) fn each(
     let mut found: Vec<(Vec<f64>, f64)> = starts
         .iter()
         .filter_map(from)
-        .map(|(mut knobs, left)| (knobs.swap_remove(0), left))
+        .map(|(mut parameters, left)| (parameters.swap_remove(0), left))
         .collect();
     found.sort_by(|a, b| a.1.total_cmp(&b.1));
     found.dedup_by(|b, a| (b.1 - a.1).abs() <= SAME * a.1);

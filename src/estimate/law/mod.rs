@@ -132,29 +132,31 @@ pub fn read(pairs: &Pairs<'_>, library: &[(String, Box<dyn CandidateEffect>)]) -
         .filter_map(|(name, law)| fit::one(name, law.as_ref(), &view, &z, &w))
         .collect();
     let n = curve.len() as f64;
-    let bic = |squares: f64, knobs: usize| {
-        n * (squares / z.len().max(1) as f64).max(f64::MIN_POSITIVE).ln() + knobs as f64 * n.ln()
+    let bic = |squares: f64, parameters: usize| {
+        n * (squares / z.len().max(1) as f64).max(f64::MIN_POSITIVE).ln()
+            + parameters as f64 * n.ln()
     };
     let mut order: Vec<usize> = (0..singles.len()).collect();
-    let rank = |i: usize| bic(singles[i].squares, singles[i].knobs());
+    let rank = |i: usize| bic(singles[i].squares, singles[i].parameters());
     order.sort_by(|&a, &b| rank(a).total_cmp(&rank(b)));
     for (place, &first) in order.iter().take(SEEDS).enumerate() {
         for &second in &order[place + 1..] {
             if let Some(both) = fit::two(&singles[first], &singles[second], &z, &w) {
-                let (knobs, squares) = (both.knobs(), both.squares);
-                tried.push((both.parts, knobs, squares));
+                let (parameters, squares) = (both.parameters(), both.squares);
+                tried.push((both.parts, parameters, squares));
             }
         }
     }
     tried.extend(singles.into_iter().map(|one| {
-        let (knobs, squares) = (one.knobs(), one.squares);
-        (one.parts, knobs, squares)
+        let (parameters, squares) = (one.parameters(), one.squares);
+        (one.parts, parameters, squares)
     }));
     if let Some(squares) = fit::drawn(&curve, KNOTS, &z, &w) {
         tried.push((vec![], KNOTS, squares));
     }
     let total: f64 = w.iter().map(|w| w * w).sum();
-    let scores: Vec<f64> = tried.iter().map(|(_, knobs, squares)| bic(*squares, *knobs)).collect();
+    let scores: Vec<f64> =
+        tried.iter().map(|(_, parameters, squares)| bic(*squares, *parameters)).collect();
     let best = scores.iter().copied().fold(f64::INFINITY, f64::min);
     let odds: Vec<f64> = scores.iter().map(|score| (-0.5 * (score - best)).exp()).collect();
     let sum: f64 = odds.iter().sum();
@@ -169,9 +171,9 @@ pub fn read(pairs: &Pairs<'_>, library: &[(String, Box<dyn CandidateEffect>)]) -
 }
 
 /// Regression of one law on pairs (z, w) from several starts (nonlinear least squares has several
-/// hills): all of its knobs and the sum of squares that is left, best first, each hill once.
+/// hills): all of its parameters and the sum of squares that is left, best first, each hill once.
 ///
-/// `starts` and `range` hold a value per knob; coefficients are solved for, wherever they start.
+/// `starts` and `range` hold a value per parameter; coefficients are solved for, wherever they start.
 #[doc(hidden)]
 pub fn regressions(
     law: &dyn CandidateEffect,
@@ -199,5 +201,5 @@ fn may_be(law: &dyn CandidateEffect, coordinate: &Signal, view: &View) -> bool {
         && card.places.channel
         && card.mechanism == Mechanism::Law
         && card.states == 0
-        && !card.knobs.is_empty()
+        && !card.parameters.is_empty()
 }

@@ -130,12 +130,12 @@ pub fn modal(model: &Model) -> Option<Model> {
     let pairs = poles.iter().filter(|p| p.1 > 0.0).map(|p| vec![2.0 * p.0, p.0 * p.0 + p.1 * p.1]);
     let pairs: Vec<_> = pairs.collect();
     let real: Vec<f64> = poles.iter().filter(|p| p.1 == 0.0).map(|p| p.0).collect();
-    let alone = real.iter().map(|&p| vec![p]);
+    let singles = real.iter().map(|&p| vec![p]);
     let joined = real.chunks(2).map(|two| match *two {
         [p, q] => vec![p + q, p * q],
         _ => two.to_vec(),
     });
-    blocks(model, pairs.iter().cloned().chain(alone))
+    blocks(model, pairs.iter().cloned().chain(singles))
         .or_else(|| blocks(model, pairs.iter().cloned().chain(joined)))
 }
 

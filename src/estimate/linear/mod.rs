@@ -113,7 +113,7 @@ pub fn linear_with(
     watch: &dyn Watch,
 ) -> Result<LinearEstimate, LinearError> {
     let signals = Signals::of(records)?;
-    watch.tell(0.0, "looking for the order");
+    watch.report(0.0, "looking for the order");
     let (nu, ny) = (signals.nu, signals.ny);
     let sights = Sight::all(&signals, order.unwrap_or(1));
     let source = || signals.source.clone();
@@ -147,7 +147,7 @@ pub fn linear_with(
     let Some(mut found) = found else {
         return Err(LinearError::NoModel { record: source(), order: first });
     };
-    watch.tell(0.7, "leaving out what is not there");
+    watch.report(0.7, "leaving out what is not there");
     let (kept, numbers) = without_insignificant(&signals, &mut found, watch);
     let mut remarks = vec![];
     if found.mirrored > 0 {
@@ -168,7 +168,7 @@ pub fn linear_with(
     remarks.extend(outcome::integrates(&numbers.model, records[0].sampling_time, longest));
     let system = outcome::system(&numbers.model, &records[0]);
     let poles = numbers.model.poles().into_iter().filter(|p| p.1 >= 0.0);
-    watch.tell(1.0, "done");
+    watch.report(1.0, "done");
     Ok(LinearEstimate {
         parameters: outcome::parameters(&system, &numbers),
         system,

@@ -49,8 +49,10 @@ pub struct Search<'a> {
 impl Search<'_> {
     /// The best model of one order: the best of all starts, refined.
     pub fn find(&self, order: usize) -> Option<Found> {
-        self.watch
-            .tell(0.1 + 0.6 * order as f64 / (order + 4) as f64, &format!("fitting order {order}"));
+        self.watch.report(
+            0.1 + 0.6 * order as f64 / (order + 4) as f64,
+            &format!("fitting order {order}"),
+        );
         let free = Free::all(self.signals.nu, self.signals.ny);
         let mut best: Option<(f64, usize, Model)> = None;
         for (a, c) in self.sights.iter().flat_map(|sight| sight.shapes(order)) {

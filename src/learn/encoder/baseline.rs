@@ -134,7 +134,7 @@ impl<'a> Baseline<'a> {
     fn lane(&self, starts: Vec<Vec<f64>>) -> Lane {
         Lane {
             theta: self.plan.signals.theta(),
-            knobs: self.plan.knob_values(),
+            effect_values: self.plan.effect_values(),
             starts,
             ..Lane::default()
         }

@@ -51,28 +51,25 @@ mod slopes;
 mod started;
 mod window;
 
-pub use baseline::Baseline;
 pub use error::EncoderError;
 pub use initialise::{
     EncoderInitialiser, Innovation, LeastSquares, Linearised, Prefit, Random, Reconstruct,
 };
 pub use linear::LinearEncoder;
-pub use reconstruct::LinearMap;
 pub use resnet::ResNetEncoder;
 pub use scaling::Scaling;
-pub use started::Started;
 pub use window::Window;
 
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
 pub use self::{
-    baseline::{Course, Outputs},
+    baseline::{Baseline, Course, Outputs},
     initialise::{About, PrefitStart},
     learned::Learned,
-    reconstruct::Reconstruction,
+    reconstruct::{LinearMap, Reconstruction},
     sampled::SampledLinear,
     scaling::Spread,
-    started::StateError,
+    started::{Started, StateError},
 };
 
 use crate::network::ResNet;

@@ -277,8 +277,8 @@ fn left_inverse(matrix: &DMatrix<f64>, forgets: &DMatrix<f64>) -> Result<LeftInv
     for (i, &length) in lengths.iter().enumerate() {
         inverse.row_mut(i).scale_mut(1.0 / length);
     }
-    let told = (0..n).filter(|i| !lost.contains(i)).map(|i| svd.singular_values[i]);
-    let condition = largest / told.fold(largest, f64::min);
+    let kept = (0..n).filter(|i| !lost.contains(i)).map(|i| svd.singular_values[i]);
+    let condition = largest / kept.fold(largest, f64::min);
     let rank = n - lost.len();
     Ok(LeftInverse { matrix: inverse.columns(0, matrix.nrows()).into_owned(), rank, condition })
 }

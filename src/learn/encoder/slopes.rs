@@ -64,7 +64,7 @@ impl<'a> Map<'a> {
     /// The point to linearise about, with the slopes there.
     pub fn there(&self, about: &About) -> Result<There, EncoderError> {
         let sizes = self.plan.sizes;
-        let checked = |what, values: &[f64], expected| {
+        let of_length = |what, values: &[f64], expected| {
             if values.len() == expected {
                 return Ok(values.to_vec());
             }
@@ -73,11 +73,11 @@ impl<'a> Map<'a> {
         match about {
             About::Equilibrium => self.equilibrium(vec![0.0; sizes.u]),
             About::EquilibriumAt { u } => {
-                self.equilibrium(checked("inputs of the equilibrium", u, sizes.u)?)
+                self.equilibrium(of_length("inputs of the equilibrium", u, sizes.u)?)
             }
             About::Point { x, u } => {
-                let x = checked("states of the point", x, sizes.x)?;
-                let u = checked("inputs of the point", u, sizes.u)?;
+                let x = of_length("states of the point", x, sizes.x)?;
+                let u = of_length("inputs of the point", u, sizes.u)?;
                 let (next, output) = self.slopes(&x, &u)?;
                 Ok(There { x, u, next, output })
             }
@@ -219,7 +219,7 @@ impl<'a> Map<'a> {
         let scale = |i: usize| self.scales.get(i).copied().filter(|s| *s > 0.0).unwrap_or(1.0);
         let lane = |x: Vec<f64>| Lane {
             theta: self.plan.signals.theta(),
-            knobs: self.plan.knob_values(),
+            effect_values: self.plan.effect_values(),
             starts: vec![x],
             ..Lane::default()
         };

@@ -157,10 +157,10 @@ impl<'a, E: Number> Driver<'a, E> {
         if !self.timed {
             // parameters are the same in all packs: a few copies stay near the processor
             let copy = size_of::<R>() * (sizes.theta + sizes.derived + sizes.w).max(1);
-            let together = (NEAR / copy).clamp(1, packs);
+            let at_once = (NEAR / copy).clamp(1, packs);
             let time = time(0);
-            for from in (0..packs).step_by(together) {
-                let packs = together.min(packs - from);
+            for from in (0..packs).step_by(at_once) {
+                let packs = at_once.min(packs - from);
                 let block = Block {
                     sizes,
                     packs,

@@ -37,18 +37,22 @@ mod standalone;
 mod structure;
 mod work;
 
-pub use block::{Baseline, Block, Learned};
 pub use closed_loop::{ClosedLoop, Controller};
 pub use error::LfrError;
 pub use interconnection::Interconnection;
-pub use matrix::Matrix;
-pub use signal::{Sink, Source};
 pub use standalone::AugmentedModel;
 pub use structure::{Form, Structure};
 
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
-pub use self::{closed_loop::Replay, matrix::Entry, sampled::Sampled, structure::Scales};
+pub use self::{
+    block::{Baseline, Block, Learned},
+    closed_loop::Replay,
+    matrix::{Entry, Matrix},
+    sampled::Sampled,
+    signal::{Sink, Source},
+    structure::Scales,
+};
 
 pub(crate) use engine::Engine;
 pub(crate) use number::Number;

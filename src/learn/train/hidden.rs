@@ -215,11 +215,11 @@ fn pool(
             segments: std::iter::once(0..part.len()).collect(),
         }
     };
-    let shown = record(measured.iter().map(|y| y[part.clone()].to_vec()).collect());
+    let measured_part = record(measured.iter().map(|y| y[part.clone()].to_vec()).collect());
     let wrong = record(error.series.chunks_exact(part.len()).map(<[f64]>::to_vec).collect());
     let (_, segments) = known.drives();
     let mut pool = vec![];
-    for (record, order) in [(&shown, n + added), (&wrong, added), (&wrong, n + added)] {
+    for (record, order) in [(&measured_part, n + added), (&wrong, added), (&wrong, n + added)] {
         // a record of which no linear model can be made proposes nothing
         let Ok(found) = linear(std::slice::from_ref(record), Some(order)) else { continue };
         let Some(of) = found.system.model.matrices(&found.system.signals().theta()) else {

@@ -42,7 +42,6 @@ mod trainer;
 mod validate;
 mod whole;
 
-pub use augmented::Augmented;
 pub use checkpoint::Checkpoint;
 pub use error::TrainError;
 pub use fit::Fit;
@@ -50,7 +49,6 @@ pub use recipe::Recipe;
 pub use shooting::MultipleShooting;
 pub use sparse::Sparse;
 pub use trainer::Trainer;
-pub use validate::Score;
 
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
@@ -58,7 +56,7 @@ pub use self::{
     ablate::warnings,
     ablate::{Ablation, ablate},
     added::Contribution,
-    augmented::Run,
+    augmented::{Augmented, Run},
     checkpoint::Fingerprint,
     disguise::{Change, Disguise},
     entered::{Added, Coordinate},
@@ -68,5 +66,6 @@ pub use self::{
     recipe::AugmentedStart,
     settings::{Finish, Growing, Mask, Weights},
     shooting::{Arithmetic, Shooting},
+    validate::Score,
     validate::Validation,
 };

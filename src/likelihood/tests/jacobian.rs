@@ -19,8 +19,8 @@ effect.hysteresis = { alpha = 2.0, beta = 1.0, gamma = 0.5 }"#;
 fn advanced(system: &System, theta: &[f64], x: &[f64], w: &[f64]) -> [Vec<f64>; 2] {
     let plan = system.plan(system.sampling.sampling_time.unwrap()).unwrap();
     let drive = Drive { inputs: vec![vec![2.0; 2]], segments: vec![0..2], clocks: vec![0.0] };
-    let knobs = plan.knob_values();
-    let mut plant = Transition::new(system, &plan, &drive, (theta, &knobs), true).unwrap();
+    let effect_values = plan.effect_values();
+    let mut plant = Transition::new(system, &plan, &drive, (theta, &effect_values), true).unwrap();
     plant.start(0);
     plant.place(x);
     let ny = plan.sizes.y;

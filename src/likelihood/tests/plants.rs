@@ -95,7 +95,7 @@ pub fn simulate_by(
     let signals = system.signals();
     let step = system.sampling.sampling_time.unwrap();
     let plan = system.plan(step).unwrap();
-    let (theta, knobs) = (signals.theta(), plan.knob_values());
+    let (theta, effect_values) = (signals.theta(), plan.effect_values());
     let mut random = Random::new(seed);
     let ny = signals.outputs.len();
     // one sample at a time: the input of a sample is known only when its output has been measured
@@ -114,7 +114,8 @@ pub fn simulate_by(
             segments: vec![0..2],
             clocks: vec![k as f64 * step],
         };
-        let mut plant = Transition::new(system, &plan, &one, (&theta, &knobs), false).unwrap();
+        let mut plant =
+            Transition::new(system, &plan, &one, (&theta, &effect_values), false).unwrap();
         plant.start(0);
         plant.place(&x);
         let (mut y, mut c) = (vec![0.0; ny], vec![0.0; ny * x.len()]);

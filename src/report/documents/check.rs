@@ -11,21 +11,21 @@ use crate::sentences::note;
 /// # Errors
 ///
 /// If a cause has no JSON, which only happens to keys that are no text.
-pub fn goodness_of_fit(checked: &GoodnessOfFit, level: f64) -> Result<Value, serde_json::Error> {
-    let faults = checked.data_faults.iter().map(cause_document).collect::<Result<Vec<_>, _>>()?;
+pub fn goodness_of_fit(outcome: &GoodnessOfFit, level: f64) -> Result<Value, serde_json::Error> {
+    let faults = outcome.data_faults.iter().map(cause_document).collect::<Result<Vec<_>, _>>()?;
     let mut document = json!({
         "schema": 1,
-        "rejected": checked.p_value.map(|p| p < level),
-        "p_value": checked.p_value,
+        "rejected": outcome.p_value.map(|p| p < level),
+        "p_value": outcome.p_value,
         "level": level,
-        "first_cause": checked.first_cause.as_ref().map(cause_document).transpose()?,
+        "first_cause": outcome.first_cause.as_ref().map(cause_document).transpose()?,
         "data_faults": faults,
-        "data_rejected": checked.rejects_data(),
+        "data_rejected": outcome.rejects_data(),
     });
-    if !checked.notes.is_empty() {
-        document["remarks"] = json!(checked.notes.iter().map(note).collect::<Vec<_>>());
+    if !outcome.notes.is_empty() {
+        document["remarks"] = json!(outcome.notes.iter().map(note).collect::<Vec<_>>());
     }
-    if checked.interrupted {
+    if outcome.interrupted {
         document["interrupted"] = json!(true);
     }
     Ok(document)

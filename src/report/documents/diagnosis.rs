@@ -26,7 +26,7 @@ pub struct FileNames<'a> {
 pub struct Document<'a> {
     schema: u32,
     #[serde(flatten)]
-    finding: Said<'a>,
+    finding: StatedFinding<'a>,
     extended_model: &'a str,
     report: &'a str,
     #[serde(flatten)]
@@ -37,7 +37,7 @@ pub struct Document<'a> {
 
 /// A cause with its sentence.
 #[derive(Debug, Serialize)]
-struct SaidCause<'a> {
+struct StatedCause<'a> {
     sentence: String,
     #[serde(flatten)]
     cause: &'a Cause,
@@ -45,7 +45,7 @@ struct SaidCause<'a> {
 
 /// A cause that was withdrawn, and why.
 #[derive(Debug, Serialize)]
-struct SaidWithdrawn<'a> {
+struct StatedWithdrawn<'a> {
     reason: String,
     #[serde(flatten)]
     withdrawn: &'a Withdrawn,
@@ -55,14 +55,14 @@ struct SaidWithdrawn<'a> {
 #[derive(Debug, Serialize)]
 struct SingleRecord<'a> {
     record: &'a str,
-    cause: SaidCause<'a>,
+    cause: StatedCause<'a>,
 }
 
 /// A finding whose causes have sentences.
 #[derive(Debug)]
-struct Said<'a>(&'a Finding);
+struct StatedFinding<'a>(&'a Finding);
 
-impl Serialize for Said<'_> {
+impl Serialize for StatedFinding<'_> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         use serde::ser::{Error, SerializeMap};
 
@@ -73,33 +73,34 @@ impl Serialize for Said<'_> {
         for (key, value) in fields {
             match key.as_str() {
                 "causes" => {
-                    let said: Vec<SaidCause<'_>> = finding.causes.iter().map(said).collect();
-                    map.serialize_entry(key, &said)?;
+                    let stated: Vec<StatedCause<'_>> = finding.causes.iter().map(stated).collect();
+                    map.serialize_entry(key, &stated)?;
                 }
                 "withdrawn" => {
-                    let said: Vec<_> = finding.withdrawn.iter().map(said_withdrawn).collect();
-                    map.serialize_entry(key, &said)?;
+                    let stated: Vec<_> = finding.withdrawn.iter().map(stated_withdrawn).collect();
+                    map.serialize_entry(key, &stated)?;
                 }
                 _ => map.serialize_entry(key, value)?,
             }
         }
         if !finding.single_records.is_empty() {
-            let alone = finding.single_records.iter();
-            let alone: Vec<_> =
-                alone.map(|a| SingleRecord { record: &a.record, cause: said(&a.cause) }).collect();
-            map.serialize_entry("alone", &alone)?;
+            let singles = finding.single_records.iter();
+            let singles: Vec<_> = singles
+                .map(|a| SingleRecord { record: &a.record, cause: stated(&a.cause) })
+                .collect();
+            map.serialize_entry("alone", &singles)?;
         }
         map.serialize_entry("remarks", &sentences::notes(finding))?;
         map.end()
     }
 }
 
-fn said(cause: &Cause) -> SaidCause<'_> {
-    SaidCause { sentence: sentences::cause(cause), cause }
+fn stated(cause: &Cause) -> StatedCause<'_> {
+    StatedCause { sentence: sentences::cause(cause), cause }
 }
 
-fn said_withdrawn(withdrawn: &Withdrawn) -> SaidWithdrawn<'_> {
-    SaidWithdrawn { reason: sentences::withdrawn(withdrawn), withdrawn }
+fn stated_withdrawn(withdrawn: &Withdrawn) -> StatedWithdrawn<'_> {
+    StatedWithdrawn { reason: sentences::withdrawn(withdrawn), withdrawn }
 }
 
 impl<'a> Document<'a> {
@@ -107,7 +108,7 @@ impl<'a> Document<'a> {
     pub fn of(finding: &'a Finding, files: FileNames<'a>, provenance: &'a Provenance) -> Self {
         let FileNames { extended_model, report } = files;
         let date = &provenance.date;
-        let (schema, finding, more) = (SCHEMA, Said(finding), serde_json::Map::new());
+        let (schema, finding, more) = (SCHEMA, StatedFinding(finding), serde_json::Map::new());
         Self { schema, finding, extended_model, report, more, provenance, date }
     }
 
@@ -137,5 +138,5 @@ impl<'a> Document<'a> {
 ///
 /// As [`Document::text`].
 pub fn cause_document(cause: &Cause) -> Result<serde_json::Value, serde_json::Error> {
-    serde_json::to_value(said(cause))
+    serde_json::to_value(stated(cause))
 }

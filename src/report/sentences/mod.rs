@@ -33,6 +33,7 @@ use crate::diagnose::{Cause, Finding, Verdict};
 
 /// The sentences that come first: the causes whose size is told from none, then those whose is not;
 /// or why there are none.
+#[doc(hidden)]
 pub fn headline(finding: &Finding) -> String {
     let lines = match finding.verdict {
         Verdict::NothingFound => vec![rest::nothing(finding)],
@@ -50,9 +51,9 @@ pub fn headline(finding: &Finding) -> String {
 
 /// Causes as they are told: those with a size first, in order of discovery.
 fn ordered(finding: &Finding) -> Vec<&Cause> {
-    let (told, rest): (Vec<&Cause>, Vec<&Cause>) =
+    let (first, rest): (Vec<&Cause>, Vec<&Cause>) =
         finding.causes.iter().partition(|cause| is_resolved(cause));
-    told.into_iter().chain(rest).collect()
+    first.into_iter().chain(rest).collect()
 }
 
 /// Everything that a terminal shows of a finding, line by line.

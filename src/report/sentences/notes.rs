@@ -10,11 +10,11 @@ pub fn notes(finding: &Finding) -> Vec<String> {
     all.extend(not_confirmed(finding));
     all.extend(finding.regime.iter().map(|(name, found)| regime(name, found)));
     all.extend(finding.closed_loop.as_ref().map(|found| closed_loop(finding, found)));
-    for alone in &finding.single_records {
-        let records = alone.cause.records.as_deref().unwrap_or_default();
+    for single in &finding.single_records {
+        let records = single.cause.records.as_deref().unwrap_or_default();
         let only = super::cause::in_records(records, "");
-        let bare = crate::diagnose::Cause { records: None, ..alone.cause.clone() };
-        all.push(format!("{} on its own: {}{only}", alone.record, super::cause::cause(&bare)));
+        let bare = crate::diagnose::Cause { records: None, ..single.cause.clone() };
+        all.push(format!("{} on its own: {}{only}", single.record, super::cause::cause(&bare)));
     }
     let distortions = finding.distortion.iter();
     all.extend(distortions.filter_map(|(name, of)| distortion(of, name, finding.unit(name))));
@@ -122,8 +122,8 @@ pub fn note(note: &Note) -> String {
                 short(*high, unit)
             )
         }
-        Note::CannotTell { together } => format!(
-            "The record cannot tell which parameter is wrong: {together}. What is named stands for all of \
+        Note::Undetermined { parameters } => format!(
+            "The record cannot tell which parameter is wrong: {parameters}. What is named stands for all of \
              them, and has no error of its own; hold with --fix those that you are sure of."
         ),
         Note::ParametersMakeUp { removed, each } => format!(

@@ -12,10 +12,10 @@ const IMITATED: f64 = 0.1;
 
 /// Some names, and how many more there are.
 fn names<T: fmt::Display>(all: &[T]) -> String {
-    let shown: Vec<String> = all.iter().take(NAMES).map(ToString::to_string).collect();
+    let listed: Vec<String> = all.iter().take(NAMES).map(ToString::to_string).collect();
     let more = all.len().saturating_sub(NAMES);
     let more = if more > 0 { format!("; and {more} more") } else { String::new() };
-    format!("{}{more}", shown.join("; "))
+    format!("{}{more}", listed.join("; "))
 }
 
 /// One line: the cause, its smallest size, and what parameters leave of it.
@@ -36,7 +36,7 @@ pub fn visibility(cause: &Visibility) -> String {
 /// One line: the two, how alike they are, and what tells them apart.
 pub fn look_alikes(pair: &LookAlikes) -> String {
     let [a, b] = &pair.causes;
-    let told = match &pair.told_apart_by[..] {
+    let reported = match &pair.distinguished_by[..] {
         [] if pair.twins => {
             "no experiment with these inputs tells them apart: while they are small \
                              the predicted difference is zero"
@@ -45,25 +45,26 @@ pub fn look_alikes(pair: &LookAlikes) -> String {
         [] => "nothing tried here tells them apart".into(),
         by => format!("told apart by: {}", by.join(", ")),
     };
-    format!("{a} | {b}: correlation {:.4}; {told}", pair.rho)
+    format!("{a} | {b}: correlation {:.4}; {reported}", pair.rho)
 }
 
 /// One line: what to do and what it would tell, of so many pairs that look alike with parameters
 /// trusted, and so many more with free ones.
 pub fn experiment(of: &Experiment, [trusted, free]: [usize; 2]) -> String {
-    let Experiment { name, description, tells_apart, tells_apart_free, also_shows, failed } = of;
+    let Experiment { name, description, distinguishes, distinguishes_free, also_shows, failed } =
+        of;
     if let Some(why) = failed {
         return format!("{name} ({description}): {why}");
     }
     let also = match &also_shows[..] {
         [] => String::new(),
-        shown => format!("; also shows {}", names(shown)),
+        listed => format!("; also shows {}", names(listed)),
     };
     let more = match free {
         0 => String::new(),
-        free => format!(" ({tells_apart_free} of {free} if parameters are free)"),
+        free => format!(" ({distinguishes_free} of {free} if parameters are free)"),
     };
-    format!("{name} ({description}): tells apart {tells_apart} of {trusted} pairs{more}{also}")
+    format!("{name} ({description}): tells apart {distinguishes} of {trusted} pairs{more}{also}")
 }
 
 /// Whether every two of a set are one and the same under every input.
@@ -124,15 +125,17 @@ pub fn outlook(outlook: &Outlook) -> String {
         lines.push("With the parameters trusted, no two causes look alike.".into());
     }
     for set in &sets {
-        let told = match outlook.best_for(set) {
+        let reported = match outlook.best_for(set) {
             None if are_twins(outlook, set) => "no experiment with these inputs tells any of them \
                                                 apart: the predicted difference is zero"
                 .into(),
             None => "nothing tried here tells any of them apart".into(),
-            Some((name, told, pairs)) if told == pairs => format!("told apart by {name}"),
-            Some((name, told, pairs)) => format!("{name} tells {told} of {pairs} pairs apart"),
+            Some((name, reported, pairs)) if reported == pairs => format!("told apart by {name}"),
+            Some((name, reported, pairs)) => {
+                format!("{name} tells {reported} of {pairs} pairs apart")
+            }
         };
-        lines.push(format!("Look alike: {} -- {told}", names(set)));
+        lines.push(format!("Look alike: {} -- {reported}", names(set)));
     }
     lines.extend(same(outlook));
     let only_free = |p: &&LookAlikes| p.track == Track::ParametersFree;
@@ -144,10 +147,11 @@ pub fn outlook(outlook: &Outlook) -> String {
     let counts = [pairs - more, more];
     if pairs > 0 || !hidden.is_empty() {
         lines.push("Experiments that would tell more:".into());
-        let telling =
-            |e: &&Experiment| e.tells_apart + e.tells_apart_free > 0 || !e.also_shows.is_empty();
+        let informative = |e: &&Experiment| {
+            e.distinguishes + e.distinguishes_free > 0 || !e.also_shows.is_empty()
+        };
         let mut any = false;
-        for other in outlook.experiments.iter().filter(telling) {
+        for other in outlook.experiments.iter().filter(informative) {
             any = true;
             lines.push(format!("  {}", experiment(other, counts)));
         }
@@ -155,7 +159,7 @@ pub fn outlook(outlook: &Outlook) -> String {
             lines.push("  none of those tried".into());
         }
     }
-    let never = outlook.look_alikes.iter().filter(|p| p.told_apart_by.is_empty()).count();
+    let never = outlook.look_alikes.iter().filter(|p| p.distinguished_by.is_empty()).count();
     match never {
         0 => lines.push("Each pair is told apart by one of them.".into()),
         never => {

@@ -96,19 +96,19 @@ pub struct Calibration {
 }
 
 impl Names {
-    fn of(told: &[(f64, bool)]) -> Self {
-        let n = told.len() as f64;
+    fn of(stated: &[(f64, bool)]) -> Self {
+        let n = stated.len() as f64;
         let outcome = |right: bool| f64::from(u8::from(right));
         let square = |(p, right): &(f64, bool)| (p - outcome(*right)).powi(2);
-        let mean_p = told.iter().map(|(p, _)| p).sum::<f64>() / n;
-        let mean_o = told.iter().map(|(_, right)| outcome(*right)).sum::<f64>() / n;
-        let across: f64 = told.iter().map(|(p, _)| (p - mean_p).powi(2)).sum();
+        let mean_p = stated.iter().map(|(p, _)| p).sum::<f64>() / n;
+        let mean_o = stated.iter().map(|(_, right)| outcome(*right)).sum::<f64>() / n;
+        let across: f64 = stated.iter().map(|(p, _)| (p - mean_p).powi(2)).sum();
         let along: f64 =
-            told.iter().map(|(p, right)| (p - mean_p) * (outcome(*right) - mean_o)).sum();
+            stated.iter().map(|(p, right)| (p - mean_p) * (outcome(*right) - mean_o)).sum();
         let bin = |i: usize| {
             let (from, to) = (i as f64 / BINS as f64, (i + 1) as f64 / BINS as f64);
             let inside: Vec<&(f64, bool)> =
-                told.iter().filter(|(p, _)| from <= *p && (*p < to || i + 1 == BINS)).collect();
+                stated.iter().filter(|(p, _)| from <= *p && (*p < to || i + 1 == BINS)).collect();
             let sum: f64 = inside.iter().map(|(p, _)| p).sum();
             let mean = (!inside.is_empty()).then(|| sum / inside.len() as f64);
             Bin {
@@ -119,8 +119,8 @@ impl Names {
             }
         };
         Self {
-            count: told.len(),
-            brier: (!told.is_empty()).then(|| told.iter().map(square).sum::<f64>() / n),
+            count: stated.len(),
+            brier: (!stated.is_empty()).then(|| stated.iter().map(square).sum::<f64>() / n),
             slope: (across > 1e-9).then(|| along / across),
             bins: (0..BINS).map(bin).collect(),
         }
@@ -164,14 +164,14 @@ fn names(marks: &[&Marks]) -> Names {
 impl Row {
     fn of(kind: Kind, marks: &[&Marks]) -> Self {
         let guilty = || marks.iter().filter(|m| !m.hidden.is_empty());
-        let told = guilty().filter(|m| !m.found.is_empty());
+        let stated = guilty().filter(|m| !m.found.is_empty());
         let (coefficients, gain) = ranks(marks);
         Self {
             kind,
             cases: marks.len(),
             spurious: Share::of(marks.iter().map(|m| m.spurious() > 0)),
             named: Share::of(guilty().map(|m| m.all())),
-            sets: Share::of(told.flat_map(|m| m.hits.iter().map(|hit| *hit > Hit::Missed))),
+            sets: Share::of(stated.flat_map(|m| m.hits.iter().map(|hit| *hit > Hit::Missed))),
             names: names(marks),
             coefficients,
             gain,
@@ -208,19 +208,19 @@ mod tests {
     #[test]
     fn what_is_as_sure_as_it_says_has_slope_one_and_flat_ranks() {
         let mut random = Random::new(3);
-        let told: Vec<(f64, bool)> = (0..20_000)
+        let stated: Vec<(f64, bool)> = (0..20_000)
             .map(|_| {
                 let p = random.uniform();
                 (p, random.uniform() < p)
             })
             .collect();
-        let names = Names::of(&told);
+        let names = Names::of(&stated);
         assert!((names.slope.unwrap() - 1.0).abs() < 0.05, "{:?}", names.slope);
         assert!((names.brier.unwrap() - 1.0 / 6.0).abs() < 0.01, "{:?}", names.brier);
         for bin in &names.bins {
             let [low, high] = bin.right.interval95;
-            let told = bin.probability.unwrap();
-            assert!(low - 0.02 < told && told < high + 0.02, "{bin:?}");
+            let stated = bin.probability.unwrap();
+            assert!(low - 0.02 < stated && stated < high + 0.02, "{bin:?}");
         }
         let z: Vec<f64> = (0..5000).map(|_| random.normal()).collect();
         let well = Ranks::of(&z, z.iter().map(|z| z.abs() < 1.96));

@@ -147,11 +147,11 @@ impl Exam {
 
 /// Some of a machine's effects, none a special case of another: the two together are the other.
 fn several(all: &[Concealed], wanted: usize, seed: u64) -> Vec<usize> {
-    let stand_alone = |drawn: &Vec<usize>| {
+    let independent = |drawn: &Vec<usize>| {
         !drawn.iter().any(|&a| drawn.iter().any(|&b| all[a].is_case_of(&all[b])))
     };
     let draw = |again: u64| lots(all.len(), wanted, seed.wrapping_add(again * 7919));
-    (0..DRAWS).map(draw).find(stand_alone).unwrap_or_else(|| draw(0))
+    (0..DRAWS).map(draw).find(independent).unwrap_or_else(|| draw(0))
 }
 
 /// Some of `of` numbers, each at most once, in order.

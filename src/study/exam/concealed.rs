@@ -16,7 +16,7 @@ pub struct Concealed {
     /// The effect at its place.
     #[serde(flatten)]
     pub placed: Placed,
-    /// Knobs that grow with the size; absent: the first coefficient, else all that have a
+    /// Parameters that grow with the size; absent: the first coefficient, else all that have a
     /// neutral value.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub size: Vec<String>,
@@ -83,14 +83,20 @@ impl Concealed {
     /// Whether it is a special case of another one at the same place, so that both together are
     /// the other.
     pub(super) fn is_case_of(&self, other: &Self) -> bool {
-        let knobs = |of: &Self| -> Vec<String> {
-            of.placed.effect.card().knobs.iter().map(|knob| knob.name.to_string()).collect()
+        let effect_parameters = |of: &Self| -> Vec<String> {
+            of.placed
+                .effect
+                .card()
+                .parameters
+                .iter()
+                .map(|effect_parameter| effect_parameter.name.to_string())
+                .collect()
         };
-        let (own, others) = (knobs(self), knobs(other));
+        let (own, others) = (effect_parameters(self), effect_parameters(other));
         let (a, b) = (&self.placed, &other.placed);
         (&a.into, &a.of) == (&b.into, &b.of)
             && own.len() < others.len()
-            && own.iter().all(|knob| others.contains(knob))
+            && own.iter().all(|effect_parameter| others.contains(effect_parameter))
     }
 
     /// The effect grown by a factor from nothing; `None` beyond what it can be.
@@ -110,15 +116,15 @@ impl Concealed {
             }
         } else {
             let grows = |name: &str, role: Role, neutral: Option<f64>| match &self.size[..] {
-                [] if card.knobs.iter().any(|k| k.role == Role::Coefficient) => {
+                [] if card.parameters.iter().any(|k| k.role == Role::Coefficient) => {
                     role == Role::Coefficient
                 }
                 [] => neutral.is_some(),
                 named => named.iter().any(|n| n == name),
             };
-            for (value, knob) in values.iter_mut().zip(&card.knobs) {
-                if grows(&knob.name, knob.role, knob.neutral) {
-                    *value = match knob.neutral {
+            for (value, effect_parameter) in values.iter_mut().zip(&card.parameters) {
+                if grows(&effect_parameter.name, effect_parameter.role, effect_parameter.neutral) {
+                    *value = match effect_parameter.neutral {
                         Some(neutral) if neutral.is_infinite() => *value / factor,
                         Some(neutral) => neutral + factor * (*value - neutral),
                         None => *value * factor,

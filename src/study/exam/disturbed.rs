@@ -47,7 +47,7 @@ impl Machine {
             if samples.is_empty() {
                 continue;
             }
-            let numbers = (run.plan.signals.theta(), run.plan.knob_values());
+            let numbers = (run.plan.signals.theta(), run.plan.effect_values());
             let moved =
                 Transition::new(run.system, &run.plan, &run.drive, (&numbers.0, &numbers.1), false);
             let Some(mut moved) = moved else {
@@ -100,9 +100,9 @@ impl Machine {
             let unit: Vec<f64> = (0..driven.len()).map(|_| random.normal()).collect();
             let mut size = 1e-6;
             for _ in 0..ROUNDS {
-                let mut alone = vec![vec![0.0; driven.len()]; channels];
-                alone[channel] = unit.iter().map(|w| size * w).collect();
-                let disturbance = Disturbance { before: None, forces: alone };
+                let mut forces = vec![vec![0.0; driven.len()]; channels];
+                forces[channel] = unit.iter().map(|w| size * w).collect();
+                let disturbance = Disturbance { before: None, forces };
                 let moved = self.outputs_disturbed(of, driven, &disturbance)?;
                 let moved = moved.map_or(f64::INFINITY, |y| {
                     let of = |(o, y): (usize, &Vec<f64>)| {

@@ -115,7 +115,7 @@ impl Exam {
                 }
                 let sha256 = self.write_case(systems, case, exam, folder)?;
                 let count = 1 + done.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
-                watch.tell(count as f64 / cases.len() as f64, &case.key());
+                watch.report(count as f64 / cases.len() as f64, &case.key());
                 Ok(Some(Seal { case: case.number, sha256 }))
             })
             .collect::<Result<_, StudyError>>()?;
@@ -139,9 +139,9 @@ impl Exam {
         let machine = &self.systems[case.system];
         let made = machine.make(&systems[case.system], case, exam.seed)?;
         let truth = CaseTruth::of(case, machine, &made, exam)?;
-        let (shown, hidden) =
+        let (public, hidden) =
             (folder.join(CASES).join(case.key()), folder.join(TRUTH).join(case.key()));
-        for folder in [&shown, &hidden] {
+        for folder in [&public, &hidden] {
             std::fs::create_dir_all(folder).map_err(|error| StudyError::write(folder, error))?;
         }
         let Made { baseline, machine: guilty, records, third } = made;
@@ -149,7 +149,7 @@ impl Exam {
         let mut names = vec![];
         for (k, record) in records.into_iter().enumerate() {
             let name = format!("record{}.csv", k + 1);
-            with_units(record, &baseline).write_csv(shown.join(&name))?;
+            with_units(record, &baseline).write_csv(public.join(&name))?;
             names.push(name);
         }
         with_units(third, &baseline).write_csv(hidden.join("third.csv"))?;
@@ -159,7 +159,7 @@ impl Exam {
             Ok(system)
         };
         let header = |what: &str| vec![format!("Written by `lacuna exam write`: {what}.")];
-        save_with(&stepped(baseline)?, &shown.join("model.toml"), &header("the model of a case"))?;
+        save_with(&stepped(baseline)?, &public.join("model.toml"), &header("the model of a case"))?;
         save_with(&stepped(guilty)?, &hidden.join("machine.toml"), &header("the machine itself"))?;
         write(&hidden.join("truth.json"), &truth)?;
         let names_of = |signals: &[crate::model::Signal]| -> Vec<String> {
@@ -175,7 +175,7 @@ impl Exam {
             outputs: names_of(&signals.outputs),
             without: truth.excluded(),
         };
-        write(&shown.join("case.json"), &case_file)?;
+        write(&public.join("case.json"), &case_file)?;
         sealed(&hidden)
     }
 }

@@ -5,7 +5,7 @@ use super::{Case, Concealed, Machine};
 use crate::StudyError;
 use crate::data::{Random, Record, noise};
 use crate::digits::number;
-use crate::effect::Knob;
+use crate::effect::EffectParameter;
 use crate::evaluate::Run;
 use crate::generate::{apart, deviation, rms, seed_of};
 use crate::model::with_parameters;
@@ -170,9 +170,9 @@ impl Machine {
             return Ok(());
         }
         let sizes = |p: &Placed| -> String {
-            let knobs = p.effect.card().knobs;
-            let one = |k: &Knob| format!("{} = {}", k.name, number(k.value, None));
-            knobs.iter().map(one).collect::<Vec<_>>().join(", ")
+            let parameters = p.effect.card().parameters;
+            let one = |k: &EffectParameter| format!("{} = {}", k.name, number(k.value, None));
+            parameters.iter().map(one).collect::<Vec<_>>().join(", ")
         };
         let hidden = guilty.0.effects[bare.0.effects.len()..].iter();
         let hidden = hidden.map(|p| format!("{} ({})", p.effect.typetag_name(), sizes(p)));

@@ -69,8 +69,8 @@ impl CaseTruth {
         let effects = &made.machine.effects[made.machine.effects.len() - case.hidden.len()..];
         let hidden = effects.iter().map(|placed| {
             let card = placed.effect.card();
-            let number = |(knob, value): (&crate::effect::Knob, f64)| Number {
-                name: knob.name.to_string(),
+            let number = |(parameter, value): (&crate::effect::EffectParameter, f64)| Number {
+                name: parameter.name.to_string(),
                 value,
                 std_error: None,
             };
@@ -79,7 +79,7 @@ impl CaseTruth {
                 into: placed.into.clone(),
                 of: placed.of.clone(),
                 parameters: card
-                    .knobs
+                    .parameters
                     .iter()
                     .zip(card.values())
                     .filter(|(_, value)| value.is_finite())

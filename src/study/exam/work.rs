@@ -81,7 +81,7 @@ impl Exam {
                     Ok(marks) => {
                         let count = done.fetch_add(1, Ordering::Relaxed) + 1;
                         let doing = format!("{} in {}", marks.hidden.join(" + "), marks.system);
-                        watch.tell(count as f64 / cases.len().max(1) as f64, &doing);
+                        watch.report(count as f64 / cases.len().max(1) as f64, &doing);
                     }
                     Err(error) => {
                         next.store(open.len(), Ordering::Relaxed);

@@ -143,7 +143,7 @@ impl<'a> Rehearsal<'a> {
             let outcome = Outcome { fingerprint: self.fingerprint, number, scene, sets };
             write(&path_of(&folder, number), &outcome)?;
             let count = 1 + done.fetch_add(1, Ordering::Relaxed);
-            watch.tell(count as f64 / open.len() as f64, "rehearsing");
+            watch.report(count as f64 / open.len() as f64, "rehearsing");
             Ok::<(), StudyError>(())
         })?;
         Ok((0..count).filter(|&number| path_of(&folder, number).exists()).count())

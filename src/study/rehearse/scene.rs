@@ -226,8 +226,8 @@ fn sized(
         let concealed = Concealed { placed: system.effects[at].clone(), size: vec![] };
         let Ok(Some(grown)) = concealed.grown(factor, baseline) else { return Ok(None) };
         let card = grown.effect.card();
-        let mut known = card.knobs.iter().zip(card.values());
-        let own = known.find(|(knob, _)| Some(knob.name.to_string()) == first);
+        let mut known = card.parameters.iter().zip(card.values());
+        let own = known.find(|(parameter, _)| Some(parameter.name.to_string()) == first);
         value = value.or(own.map(|(_, value)| value));
         system.effects[at] = grown;
     }

@@ -46,9 +46,9 @@ impl Stage<'_> {
             if names.first() == Some(&wanted) {
                 return Ok(Some(fitted.extended));
             }
-            let is_beside = sets(&fitted).first().is_some_and(|set| set.contains(&wanted));
+            let is_runner_up = sets(&fitted).first().is_some_and(|set| set.contains(&wanted));
             let at =
-                names.first().filter(|_| is_beside).and_then(|n| position(&fitted.extended, n));
+                names.first().filter(|_| is_runner_up).and_then(|n| position(&fitted.extended, n));
             law = at.map(|at| fitted.extended.effects[at].clone());
         }
         match law {

@@ -3,8 +3,7 @@
 use super::{crest_factor, positive, samples, scale_to};
 use crate::data::error::DataError;
 use crate::data::random::Random;
-use realfft::num_complex::Complex;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use crate::fourier::{self, Complex, ComplexToReal, RealToComplex};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -198,11 +197,7 @@ struct Period {
 
 impl Period {
     fn new(samples: usize) -> Self {
-        let mut planner = RealFftPlanner::new();
-        Self {
-            to_time: planner.plan_fft_inverse(samples),
-            to_lines: planner.plan_fft_forward(samples),
-        }
+        Self { to_time: fourier::inverse(samples), to_lines: fourier::forward(samples) }
     }
 
     fn time(&self, lines: &[usize], phases: &[f64]) -> Vec<f64> {

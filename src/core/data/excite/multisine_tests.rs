@@ -7,7 +7,7 @@ fn multisine(lines: Lines) -> Multisine {
 
 /// Magnitudes of the lines of one period.
 fn spectrum(signal: &[f64]) -> Vec<f64> {
-    let forward = RealFftPlanner::<f64>::new().plan_fft_forward(signal.len());
+    let forward = fourier::forward(signal.len());
     let mut lines = forward.make_output_vec();
     forward.process(&mut signal.to_vec(), &mut lines).unwrap();
     lines.iter().map(|line| line.norm()).collect()

@@ -8,8 +8,8 @@ impl fmt::Display for Remark {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::ExtraColumns { names } => {
-                let shown: Vec<String> = names.iter().map(|name| named(name)).collect();
-                write!(f, "{} ignored: {}", count(names.len(), "extra column"), shown.join(", "))
+                let listed: Vec<String> = names.iter().map(|name| named(name)).collect();
+                write!(f, "{} ignored: {}", count(names.len(), "extra column"), listed.join(", "))
             }
             Self::Converted { column, from, to } => {
                 write!(f, "column `{column}`: {from} converted to {to}")
@@ -123,9 +123,9 @@ fn count(n: usize, what: &str) -> String {
 }
 
 fn first_lines(count: usize, lines: &[usize]) -> String {
-    let shown: Vec<String> = lines.iter().map(usize::to_string).collect();
+    let listed: Vec<String> = lines.iter().map(usize::to_string).collect();
     let more = if count > lines.len() { ", .." } else { "" };
-    format!("line{} {}{more}", if count == 1 { "" } else { "s" }, shown.join(", "))
+    format!("line{} {}{more}", if count == 1 { "" } else { "s" }, listed.join(", "))
 }
 
 #[cfg(test)]

@@ -10,13 +10,13 @@ use crate::real::{Given, Node, Real, Tape, Trace};
 
 /// Runs one step of `plan` with numbers that write down what is done with them.
 ///
-/// `parameters` are the model's that may change, by their number in its list; knobs come after
+/// `parameters` are the model's that may change, by their number in its list; those of effects come after
 /// them, those that are not finite being constants.
 pub(crate) fn record(law: &dyn Law, plan: &Plan, parameters: &[usize]) -> Recorded {
     let lane = Lane {
         theta: plan.signals.theta(),
         starts: vec![plan.signals.initial()],
-        knobs: plan.knob_values(),
+        effect_values: plan.effect_values(),
         ..Lane::default()
     };
     let (mut recorded, tape) = Tape::record(|| step(law, plan, &lane, parameters));
@@ -37,18 +37,18 @@ fn step(law: &dyn Law, plan: &Plan, lane: &Lane, parameters: &[usize]) -> Record
     for &i in parameters {
         run.theta[i] = parameter(lane.theta[i]);
     }
-    let knob = |&value: &f64| match value.is_finite() {
+    let effect_parameter = |&value: &f64| match value.is_finite() {
         true => parameter(value),
         false => Trace::constant(value),
     };
-    let knobs: Vec<Trace> = lane.knobs.iter().map(knob).collect();
+    let effect_values: Vec<Trace> = lane.effect_values.iter().map(effect_parameter).collect();
     for slot in &plan.slots {
         if let Way::Value(p) = slot.way {
-            run.theta[p] = knobs[slot.knobs];
+            run.theta[p] = effect_values[slot.first_parameter];
         }
     }
     run.theta_now.copy_from_slice(&run.theta);
-    run.groups[0].take_knobs(knobs);
+    run.groups[0].take_effect_values(effect_values);
     run.start(&groups, 0);
 
     recorded.remembered = run.give_states();

@@ -48,14 +48,18 @@ impl<'a> Transition<'a> {
         system: &'a System,
         plan: &'a Plan,
         drive: &'a Drive,
-        (theta, knobs): (&[f64], &[f64]),
+        (theta, effect_values): (&[f64], &[f64]),
         parameters: bool,
     ) -> Option<Self> {
         let n = plan.sizes;
         let (states, forces) = (n.x + plan.states, n.w + n.u);
         let directions = states + forces + if parameters { n.theta } else { 0 };
         let packs = directions.div_ceil(IN_PACK).max(1);
-        let lane = Lane { theta: theta.to_vec(), knobs: knobs.to_vec(), ..Lane::default() };
+        let lane = Lane {
+            theta: theta.to_vec(),
+            effect_values: effect_values.to_vec(),
+            ..Lane::default()
+        };
         // a lane for every place: every one carries other directions of the same run
         let lanes = vec![lane; packs * F64x8::LANES];
         let law: &dyn Law = system.model.as_ref();

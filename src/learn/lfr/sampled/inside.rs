@@ -59,7 +59,8 @@ impl<R: EffectNumber> Room<'_, R> {
             }
             if slot.card.mechanism == Mechanism::Play {
                 for pack in 0..packs {
-                    let width = self.knobs[pack * made.plan.knobs + slot.knobs];
+                    let width = self.effect_values
+                        [pack * made.plan.effect_parameters + slot.first_parameter];
                     let z = self.z[number][pack];
                     let from = self.kept(number, pack)[0];
                     self.w[number][pack] = path::play(from, width, z) - z;
@@ -75,10 +76,10 @@ impl<R: EffectNumber> Room<'_, R> {
             let own = |pack: usize| &s[pack * all + slot.states..][..m];
             let states: Vec<R> = (0..packs).flat_map(|p| own(p).iter().copied()).collect();
             let mut state_rates = vec![R::constant(0.0); packs * m];
-            let knobs = self.knobs_of(slot);
+            let effect_values = self.values_of(slot);
             let block = EffectBlock {
                 packs,
-                knobs: &knobs,
+                parameters: &effect_values,
                 coordinates: &coordinates,
                 rate: &rate_in,
                 has_rate: rate.is_some(),

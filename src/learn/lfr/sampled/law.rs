@@ -9,21 +9,22 @@ use super::made::Made;
 /// effects, pack by pack.
 pub(super) fn split<R: EffectNumber>(made: &Made, block: &Block<'_, R>) -> (Vec<R>, Vec<R>) {
     let own = made.plan.sizes.theta;
-    let (mut theta, mut knobs) = (vec![], vec![]);
+    let (mut theta, mut effect_values) = (vec![], vec![]);
     for pack in 0..block.packs {
         let all = &block.theta[pack * block.sizes.theta..][..block.sizes.theta];
-        let mut values: Vec<R> = made.knobs.iter().map(|&value| R::constant(value)).collect();
+        let mut values: Vec<R> =
+            made.effect_values.iter().map(|&value| R::constant(value)).collect();
         for (tuned, &value) in made.tuned.iter().zip(&all[own..]) {
             values[*tuned] = value;
         }
         let first = theta.len();
         theta.extend_from_slice(&all[..own]);
-        for &(parameter, knob) in &made.replaced {
-            theta[first + parameter] = values[knob];
+        for &(parameter, effect_parameter) in &made.replaced {
+            theta[first + parameter] = values[effect_parameter];
         }
-        knobs.extend(values);
+        effect_values.extend(values);
     }
-    (theta, knobs)
+    (theta, effect_values)
 }
 
 /// What the model derives from its parameters before any drift.

@@ -21,7 +21,7 @@ pub(super) struct Made {
     pub plan: Plan,
     pub signals: Signals,
     /// Present values of all numbers of effects, and which of them are parameters.
-    pub knobs: Vec<f64>,
+    pub effect_values: Vec<f64>,
     pub tuned: Vec<usize>,
     /// Parameters of the model that an effect replaces, with its number.
     pub replaced: Vec<(usize, usize)>,
@@ -47,7 +47,7 @@ impl Made {
         let plan = system.plan(sampling_time).map_err(said)?;
         let inner = plan.signals.clone();
         let mut made = Self {
-            knobs: plan.knob_values(),
+            effect_values: plan.effect_values(),
             signals: Signals { time: TimeKind::Discrete, channels: vec![], ..inner.clone() },
             tuned: vec![],
             replaced: vec![],
@@ -96,29 +96,32 @@ impl Made {
         };
         let (channel, coordinate) = (unit(Some(&of.into)), unit(of.of.as_deref()));
         match slot.way {
-            Way::Value(p) => self.replaced.push((p, slot.knobs)),
-            Way::Drift(p) => self.drifts.push((p, slot.knobs)),
+            Way::Value(p) => self.replaced.push((p, slot.first_parameter)),
+            Way::Drift(p) => self.drifts.push((p, slot.first_parameter)),
             _ => {}
         }
         let mut parameters = vec![];
-        for (i, knob) in slot.card.knobs.iter().enumerate() {
-            let name = format!("{label}.{}", knob.name);
-            let why = match (slot.card.mechanism, knob.role) {
+        for (i, effect_parameter) in slot.card.parameters.iter().enumerate() {
+            let name = format!("{label}.{}", effect_parameter.name);
+            let why = match (slot.card.mechanism, effect_parameter.role) {
                 (Mechanism::Delay, _) => "the length of a delay decides how many states there are",
                 (_, Role::Choice) => "a variant has no slope",
-                _ if !knob.value.is_finite() => "an absent bound has no slope",
+                _ if !effect_parameter.value.is_finite() => "an absent bound has no slope",
                 _ => "",
             };
             if !why.is_empty() {
                 self.held.push((name, why));
                 continue;
             }
-            self.tuned.push(slot.knobs + i);
+            self.tuned.push(slot.first_parameter + i);
             let effect = slot.effect.typetag_name();
-            self.keys.push(format!("effects.{placed}.effect.{effect}.{}", knob.name));
-            let unit = knob.unit.text(&channel, &coordinate);
-            parameters
-                .push(Parameter::new(name, knob.value, &unit).at_least(knob.min).at_most(knob.max));
+            self.keys.push(format!("effects.{placed}.effect.{effect}.{}", effect_parameter.name));
+            let unit = effect_parameter.unit.text(&channel, &coordinate);
+            parameters.push(
+                Parameter::new(name, effect_parameter.value, &unit)
+                    .at_least(effect_parameter.min)
+                    .at_most(effect_parameter.max),
+            );
         }
         self.signals.parameters.extend(parameters);
     }
@@ -126,7 +129,8 @@ impl Made {
     /// What a slot remembers, as states.
     fn memory(&mut self, number: usize, label: &str) -> Result<(), String> {
         let slot = &self.plan.slots[number];
-        let steps = |slot: &Slot| (self.knobs[slot.knobs] / self.plan.step()).floor();
+        let steps =
+            |slot: &Slot| (self.effect_values[slot.first_parameter] / self.plan.step()).floor();
         let to_output = |targets: &[(usize, f64)]| {
             targets
                 .iter()

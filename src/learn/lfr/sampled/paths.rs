@@ -26,17 +26,18 @@ impl<R: EffectNumber> Room<'_, R> {
         for pack in 0..self.packs {
             let at = pack * nu + i;
             let three = [self.u[0][at], self.u[1][at], self.u[2][at]];
-            let knob = self.knobs[pack * self.made.plan.knobs + slot.knobs];
+            let parameter =
+                self.effect_values[pack * self.made.plan.effect_parameters + slot.first_parameter];
             let kept = self.kept(number, pack);
             let answer = match slot.card.mechanism {
                 Mechanism::Lag => {
-                    let (answer, value) = path::lag(kept[0], knob, h, three, held);
+                    let (answer, value) = path::lag(kept[0], parameter, h, three, held);
                     kept[0] = value;
                     answer
                 }
-                Mechanism::Delay => path::delay(kept, knob.lane(0) / h, three, held),
+                Mechanism::Delay => path::delay(kept, parameter.lane(0) / h, three, held),
                 Mechanism::Play => three.map(|u| {
-                    kept[0] = path::play(kept[0], knob, u);
+                    kept[0] = path::play(kept[0], parameter, u);
                     kept[0]
                 }),
                 _ => three,
@@ -57,10 +58,10 @@ impl<R: EffectNumber> Room<'_, R> {
     pub(super) fn curve(&self, slot: &Slot, values: &[R]) -> Vec<R> {
         let zero = vec![R::constant(0.0); self.packs];
         let mut w = zero.clone();
-        let knobs = self.knobs_of(slot);
+        let effect_values = self.values_of(slot);
         let block = EffectBlock {
             packs: self.packs,
-            knobs: &knobs,
+            parameters: &effect_values,
             coordinates: values,
             rate: &zero,
             has_rate: false,
@@ -70,9 +71,9 @@ impl<R: EffectNumber> Room<'_, R> {
         w
     }
 
-    pub(super) fn knobs_of(&self, slot: &Slot) -> Vec<R> {
-        let (all, count) = (self.made.plan.knobs, slot.card.knobs.len());
-        let own = |pack: usize| &self.knobs[pack * all + slot.knobs..][..count];
+    pub(super) fn values_of(&self, slot: &Slot) -> Vec<R> {
+        let (all, count) = (self.made.plan.effect_parameters, slot.card.parameters.len());
+        let own = |pack: usize| &self.effect_values[pack * all + slot.first_parameter..][..count];
         (0..self.packs).flat_map(|pack| own(pack).iter().copied()).collect()
     }
 
@@ -94,19 +95,20 @@ impl<R: EffectNumber> Room<'_, R> {
         }
         for pack in 0..self.packs {
             let value = &mut y[pack * ny + o];
-            let knob = self.knobs[pack * self.made.plan.knobs + slot.knobs];
+            let parameter =
+                self.effect_values[pack * self.made.plan.effect_parameters + slot.first_parameter];
             let (now, kept) = (*value, self.kept(number, pack));
             *value = match slot.card.mechanism {
                 Mechanism::Lag => {
                     let before = kept[1];
                     let line = [before, (before + now) * 0.5, now];
-                    let (answer, end) = path::lag(kept[0], knob, h, line, false);
+                    let (answer, end) = path::lag(kept[0], parameter, h, line, false);
                     (kept[0], kept[1]) = (end, now);
                     answer[2]
                 }
-                Mechanism::Delay => path::delay(kept, knob.lane(0) / h, [now; 3], false)[0],
+                Mechanism::Delay => path::delay(kept, parameter.lane(0) / h, [now; 3], false)[0],
                 Mechanism::Play => {
-                    kept[0] = path::play(kept[0], knob, now);
+                    kept[0] = path::play(kept[0], parameter, now);
                     kept[0]
                 }
                 _ => now,

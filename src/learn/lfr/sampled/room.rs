@@ -19,7 +19,7 @@ pub(super) struct Room<'a, R> {
     /// Parameters now, and what the model derives from them.
     pub(super) now: Vec<R>,
     pub(super) derived: Vec<R>,
-    pub(super) knobs: Vec<R>,
+    pub(super) effect_values: Vec<R>,
     pub(super) x: Vec<R>,
     pub(super) xt: Vec<R>,
     pub(super) s: Vec<R>,
@@ -41,7 +41,7 @@ impl<'a, R: EffectNumber> Room<'a, R> {
     pub fn new(law: &'a dyn Law, made: &'a Made, block: &Block<'a, R>) -> Self {
         let (n, packs) = (made.plan.sizes, block.packs);
         let zeros = |count: usize| vec![R::constant(0.0); packs * count];
-        let (theta, knobs) = split(made, block);
+        let (theta, effect_values) = split(made, block);
         let part = |from: usize, count: usize| -> Vec<R> {
             let pack = |pack: usize| &block.x[pack * block.sizes.x + from..][..count];
             (0..packs).flat_map(|p| pack(p).iter().copied()).collect()
@@ -56,7 +56,7 @@ impl<'a, R: EffectNumber> Room<'a, R> {
             now: theta.clone(),
             theta,
             derived: block.derived.to_vec(),
-            knobs,
+            effect_values,
             x: part(0, n.x),
             xt: zeros(n.x),
             s: part(n.x, states),
@@ -126,9 +126,9 @@ impl<'a, R: EffectNumber> Room<'a, R> {
             return;
         }
         let (n, time) = (self.made.plan.sizes, self.time + later);
-        for &(p, knob) in &self.made.drifts {
+        for &(p, parameter) in &self.made.drifts {
             for pack in 0..self.packs {
-                let rate = self.knobs[pack * self.made.plan.knobs + knob];
+                let rate = self.effect_values[pack * self.made.plan.effect_parameters + parameter];
                 self.now[pack * n.theta + p] = self.theta[pack * n.theta + p] + rate * time;
             }
         }
@@ -238,7 +238,8 @@ impl<'a, R: EffectNumber> Room<'a, R> {
                 continue;
             }
             for pack in 0..self.packs {
-                let width = self.knobs[pack * self.made.plan.knobs + slot.knobs];
+                let width = self.effect_values
+                    [pack * self.made.plan.effect_parameters + slot.first_parameter];
                 let z = self.z[number][pack];
                 let kept = self.kept(number, pack);
                 kept[0] = path::play(kept[0], width, z);

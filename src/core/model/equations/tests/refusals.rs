@@ -37,9 +37,11 @@ fn an_unknown_name() {
     let EquationsError { key, at, problem } = error(&table);
     assert_eq!((key.as_str(), at), ("states[1].derivative", Some((10, 6))));
     assert_eq!(problem.near().as_deref(), Some("gravity"));
-    let told = error(&table);
-    assert_eq!(told.to_string(), "`states[1].derivative`, character 11: unknown name `gravty`");
-    assert!(told.hint().unwrap().starts_with("did you mean `gravity`? There are: torque, theta,"));
+    let refusal = error(&table);
+    assert_eq!(refusal.to_string(), "`states[1].derivative`, character 11: unknown name `gravty`");
+    assert!(
+        refusal.hint().unwrap().starts_with("did you mean `gravity`? There are: torque, theta,")
+    );
 }
 
 #[test]

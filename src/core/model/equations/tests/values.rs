@@ -121,13 +121,13 @@ fn every_number_of_packs_gives_the_same() {
 
 #[test]
 fn threads_do_not_share_registers() {
-    let alone = many::<F64x8>(20);
+    let single = many::<F64x8>(20);
     std::thread::scope(|scope| {
         let runs: Vec<_> = (0..4)
             .map(|_| scope.spawn(|| (0..50).map(|_| many::<F64x8>(20)).collect::<Vec<_>>()))
             .collect();
         for run in runs {
-            assert!(run.join().unwrap().iter().all(|values| *values == alone));
+            assert!(run.join().unwrap().iter().all(|values| *values == single));
         }
     });
 }
