@@ -5,6 +5,7 @@ use crate::model::{Ask, DIRECTIONS, LaneNumber, Way};
 use crate::network::Row;
 use crate::real::Real;
 
+use super::adjoint::{Along, Point};
 use super::block::Pace;
 use super::combine;
 use super::driver::{Driver, Group, Sight};
@@ -106,6 +107,10 @@ impl<E: Number> Room<E> {
     /// Advances x by one sample; with `keep`, `kept` holds the states at all stages.
     fn advance(&mut self, driver: &Driver<'_, E>, sight: Sight<'_, E>, keep: bool) {
         self.begin(driver, sight);
+        if keep && driver.pace == Pace::Discrete {
+            // its one stage stands at the sample itself
+            return self.kept[..self.x.len()].copy_from_slice(&self.x);
+        }
         let (h, tableau) = (driver.pace.step(), driver.pace.tableau());
         let size = self.x.len();
         let share = 1.0 / driver.pace.substeps() as f64;
@@ -166,8 +171,7 @@ impl<E: Number> Room<E> {
             }
         }
         self.advance(driver, sight, true);
-        let zero = E::Lanes::constant(0.0);
-        let (packs, size) = (per_row::<E>(), self.x.len());
+        let (zero, packs, size) = (E::Lanes::constant(0.0), per_row::<E>(), self.x.len());
         combine::spread(lanes(along_end), &mut self.lambda, packs);
         self.along_u.fill(zero);
         let (h, tableau) = (driver.pace.step(), driver.pace.tableau());
@@ -244,6 +248,13 @@ impl<E: Number> Room<E> {
         }
         self.pulled.fill(E::Lanes::constant(0.0));
         let count = n.answer(ask);
+        if let Some(recorded) = driver.recorded(ask) {
+            let time = |p: usize| time::<E>(sight, p, later);
+            let at = Point { theta: &driver.theta, x, u, w: &self.w, time: &time };
+            let u = if driver.wants_u { &mut self.along_u[..] } else { &mut [] };
+            let along = Along { x: &mut self.pulled, u, theta: &mut self.along_theta };
+            return recorded.pull(packs, &at, &self.weight[..packs * count], &driver.free, along);
+        }
         let results = &mut self.results[..packs * count];
         let weight = &self.weight[..packs * count];
         let [inputs, theta, _] = driver.directions();
