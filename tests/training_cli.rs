@@ -284,7 +284,7 @@ fn a_learned_gain_stands_in_the_model_file_and_predicts_from_it() {
          finish = { legs = 2, steps = 30 }\nvalidation = { lengths = [60], sections = 200 }\n",
     );
     for (name, samples, seed) in [("est.csv", 2000, 1), ("test.csv", 2000, 2)] {
-        disturbed(samples, seed).write_csv(&place.0.join(name)).unwrap();
+        disturbed(samples, seed).write_csv(place.0.join(name)).unwrap();
     }
     place.json("fit --model model.toml --data est.csv --config fit.toml --out fitted --seed 1");
     let test = disturbed(2000, 2);

@@ -45,8 +45,9 @@ pub enum Leaf {
 /// let x = F64x8::constant(0.5);
 /// let [mut values, mut slopes] = reverse.room::<F64x8>();
 /// values[..Reverse::TOGETHER].fill(x);
+/// reverse.forward(&mut values);
 /// let weights = vec![F64x8::constant(2.0); Reverse::TOGETHER];
-/// reverse.sweep(&mut values, &mut slopes, &weights);
+/// reverse.back(&values, &mut slopes, &weights);
 /// let slope = 2.0 * (0.5_f64.cos() * 0.5 + 0.5_f64.sin());
 /// assert!((slopes[0].lane(0) - slope).abs() < 1e-15);
 /// ```
@@ -108,7 +109,7 @@ impl Reverse {
     }
 
     /// Leaves and operations.
-    pub fn count(&self) -> usize {
+    fn count(&self) -> usize {
         self.leaves.len() + self.ops.len()
     }
 
@@ -124,11 +125,20 @@ impl Reverse {
         [values, zeros()]
     }
 
-    /// Computes all values, those of the leaves being given, and the slopes of the sum of all
-    /// results, each times its weight (laid out as the values), along every leaf.
-    pub fn sweep<R: InRegisters>(&self, values: &mut [R], slopes: &mut [R], weights: &[R]) {
+    /// Computes all values, those of the leaves being given.
+    pub fn forward<R: InRegisters>(&self, values: &mut [R]) {
         forward(&self.ops, self.leaves.len(), values);
-        slopes.fill(R::constant(0.0));
+    }
+
+    /// Packs of a result whose values are there; `None` where it is a constant.
+    pub fn result<'r, R>(&self, values: &'r [R], number: usize) -> Option<&'r [R]> {
+        self.roots[number].map(|root| &values[root as usize * Self::TOGETHER..][..Self::TOGETHER])
+    }
+
+    /// The slopes of the sum of all results, each times its weight (laid out as the values), along
+    /// every leaf. Slopes have to be 0 before; those of the leaves have to be set to 0 by whoever has read
+    /// them, all others are.
+    pub fn back<R: InRegisters>(&self, values: &[R], slopes: &mut [R], weights: &[R]) {
         for (root, weights) in self.roots.iter().zip(weights.chunks_exact(Self::TOGETHER)) {
             let Some(root) = root else { continue };
             let to = slopes[*root as usize * Self::TOGETHER..].iter_mut();
@@ -239,11 +249,9 @@ per_lanes! {
         for (i, op) in ops.iter().enumerate().rev() {
             let own = (leaves + i) as u32;
             let weight = packs(slopes, own);
+            slopes[own as usize * N..][..N].fill(R::constant(0.0));
             match *op {
-                Op::One(Unary::Negative, a) => {
-                    let minus = [R::constant(-1.0); N];
-                    add(slopes, a, weight, minus);
-                }
+                Op::One(Unary::Negative, a) => add(slopes, a, weight, [R::constant(-1.0); N]),
                 Op::One(Unary::Tanh, a) => {
                     let mut slope = packs(values, own);
                     for t in &mut slope {
@@ -251,7 +259,6 @@ per_lanes! {
                     }
                     add(slopes, a, weight, slope);
                 }
-                Op::One(Unary::Exp, a) => add(slopes, a, weight, packs(values, own)),
                 Op::One(f, a) => {
                     let x = packs(values, a);
                     let slope = each!(f, Unary: Negative, Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh,

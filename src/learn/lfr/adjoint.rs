@@ -17,6 +17,8 @@ pub(super) struct Adjoint {
     reverse: Reverse,
     sizes: Sizes,
     results: usize,
+    /// Values of the results that are constants.
+    constants: Vec<f64>,
     /// Numbers of the leaves that are given, and what they are.
     given: Vec<(usize, Given)>,
 }
@@ -36,8 +38,23 @@ pub(super) struct Along<'a, R> {
     pub x: &'a mut [R],
     /// Empty where it is not wanted.
     pub u: &'a mut [R],
-    /// One for each of the free parameters.
+    /// Which parameters are wanted, and what takes theirs.
+    pub free: &'a [usize],
     pub theta: &'a mut [R],
+}
+
+/// Intermediate values of one thread.
+pub(super) struct Sweeps<R> {
+    values: Vec<R>,
+    slopes: Vec<R>,
+    weights: Vec<R>,
+}
+
+impl<R> Sweeps<R> {
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        (self.values.len() + self.slopes.len() + self.weights.len()) * size_of::<R>()
+    }
 }
 
 const TOGETHER: usize = Reverse::TOGETHER;
@@ -83,8 +100,55 @@ impl Adjoint {
             Leaf::Given(given) => Some((i, *given)),
             Leaf::Constant(_) => None,
         });
-        let given = given.collect();
-        Some(Self { reverse, sizes, results, given })
+        let (given, constants) = (given.collect(), answer.iter().map(|y| y.value()).collect());
+        Some(Self { reverse, sizes, results, constants, given })
+    }
+
+    /// Room for the sweeps of one thread.
+    pub fn room<R: InRegisters>(&self) -> Sweeps<R> {
+        let [values, slopes] = self.reverse.room();
+        let weights = vec![R::constant(0.0); self.results * TOGETHER];
+        Sweeps { values, slopes, weights }
+    }
+
+    /// Gives the leaves what the law is asked with, for the packs from `first` on; where there are
+    /// fewer, one of them stands for the rest.
+    fn give<R: InRegisters>(&self, first: usize, packs: usize, at: &Point<'_, R>, to: &mut [R]) {
+        let (n, zero) = (self.sizes, R::constant(0.0));
+        for &(leaf, what) in &self.given {
+            for (p, value) in to[leaf * TOGETHER..][..TOGETHER].iter_mut().enumerate() {
+                let pack = (first + p).min(packs - 1);
+                *value = match what {
+                    Given::Parameter(i) => R::constant(at.theta[i as usize]),
+                    Given::State(i) => at.x[pack * n.x + i as usize],
+                    Given::Input(i) => at.u[pack * n.u + i as usize],
+                    Given::Next(i) => at.w.get(pack * n.w + i as usize).copied().unwrap_or(zero),
+                    Given::Time => (at.time)(pack),
+                    Given::Substep | Given::Started => zero,
+                };
+            }
+        }
+    }
+
+    /// The law's answer, for `packs` packs: the same operations as the law's own.
+    pub fn answer<R: InRegisters>(
+        &self,
+        packs: usize,
+        at: &Point<'_, R>,
+        room: &mut Sweeps<R>,
+        out: &mut [R],
+    ) {
+        for first in (0..packs).step_by(TOGETHER) {
+            self.give(first, packs, at, &mut room.values);
+            self.reverse.forward(&mut room.values);
+            for i in 0..self.results {
+                for p in 0..TOGETHER.min(packs - first) {
+                    let value = self.reverse.result(&room.values, i).map(|result| result[p]);
+                    out[(first + p) * self.results + i] =
+                        value.unwrap_or_else(|| R::constant(self.constants[i]));
+                }
+            }
+        }
     }
 
     /// Adds `lambda` (one number for each result) times the slopes of the results, for `packs` packs.
@@ -93,40 +157,24 @@ impl Adjoint {
         packs: usize,
         at: &Point<'_, R>,
         lambda: &[R],
-        free: &[usize],
+        room: &mut Sweeps<R>,
         along: Along<'_, R>,
     ) {
         let (n, zero) = (self.sizes, R::constant(0.0));
-        let [mut values, mut slopes] = self.reverse.room::<R>();
-        let mut weights = vec![zero; self.results * TOGETHER];
         for first in (0..packs).step_by(TOGETHER) {
-            // the last packs may be fewer: the others repeat one of them and weigh nothing
-            let pack = |p: usize| (first + p).min(packs - 1);
-            for &(leaf, what) in &self.given {
-                for (p, value) in values[leaf * TOGETHER..][..TOGETHER].iter_mut().enumerate() {
-                    let pack = pack(p);
-                    *value = match what {
-                        Given::Parameter(i) => R::constant(at.theta[i as usize]),
-                        Given::State(i) => at.x[pack * n.x + i as usize],
-                        Given::Input(i) => at.u[pack * n.u + i as usize],
-                        Given::Next(i) => {
-                            at.w.get(pack * n.w + i as usize).copied().unwrap_or(zero)
-                        }
-                        Given::Time => (at.time)(pack),
-                        Given::Substep | Given::Started => zero,
-                    };
-                }
-            }
-            for (i, weights) in weights.chunks_exact_mut(TOGETHER).enumerate() {
+            self.give(first, packs, at, &mut room.values);
+            self.reverse.forward(&mut room.values);
+            for (i, weights) in room.weights.chunks_exact_mut(TOGETHER).enumerate() {
                 for (p, weight) in weights.iter_mut().enumerate() {
+                    // what stands for the rest weighs nothing
                     let own = first + p;
                     *weight = if own < packs { lambda[own * self.results + i] } else { zero };
                 }
             }
-            self.reverse.sweep(&mut values, &mut slopes, &weights);
+            self.reverse.back(&room.values, &mut room.slopes, &room.weights);
             let together = TOGETHER.min(packs - first);
             for &(leaf, what) in &self.given {
-                for (p, &slope) in slopes[leaf * TOGETHER..][..together].iter().enumerate() {
+                for (p, &slope) in room.slopes[leaf * TOGETHER..][..together].iter().enumerate() {
                     let pack = first + p;
                     let to = match what {
                         Given::State(i) => &mut along.x[pack * n.x + i as usize],
@@ -134,15 +182,16 @@ impl Adjoint {
                             &mut along.u[pack * n.u + i as usize]
                         }
                         Given::Parameter(i) => {
-                            let place = free.iter().position(|&free| free == i as usize);
+                            let place = along.free.iter().position(|&free| free == i as usize);
                             let Some(place) = place else { break };
-                            &mut along.theta[pack * free.len() + place]
+                            &mut along.theta[pack * along.free.len() + place]
                         }
                         _ => break,
                     };
                     *to += slope;
                 }
             }
+            room.slopes[..self.reverse.leaves().len() * TOGETHER].fill(zero);
         }
     }
 }

@@ -33,6 +33,8 @@ pub(crate) struct Driver<'a, E: Number> {
     pub(super) whole: bool,
     /// What the law does, recorded: for its derivative, and for its outputs.
     recorded: Option<[Adjoint; 2]>,
+    /// Whether its answers are computed from that too.
+    pub(super) replays: bool,
     /// What the law derives from its parameters, once.
     derived: Vec<f64>,
     pub(super) plain: Constants<E::Lanes>,
@@ -79,6 +81,7 @@ impl<'a, E: Number> Driver<'a, E> {
             adjoint: false,
             whole: false,
             recorded: None,
+            replays: false,
             derived: vec![],
             plain: empty,
             groups: vec![],
@@ -86,9 +89,10 @@ impl<'a, E: Number> Driver<'a, E> {
         driver.set(&baseline.theta());
         driver.adjoint = driver.free.is_empty() && driver.has_adjoint();
         driver.whole = driver.marches();
-        // where dual numbers would have to run the law more than once, or it takes whole samples
-        if !driver.adjoint && (driver.groups.len() > 1 || driver.pace == Pace::Discrete) {
+        // where dual numbers would have to run the law more than once, or it runs others
+        if !driver.adjoint && (driver.groups.len() > 1 || law.composed()) {
             driver.recorded = Adjoint::of_both(law, driver.sizes, &driver.theta);
+            driver.replays = law.composed() && driver.pace == Pace::Discrete;
         }
         driver
     }

@@ -247,6 +247,10 @@ impl Law for AugmentedModel {
         }
     }
 
+    fn composed(&self) -> bool {
+        true
+    }
+
     fn ramped(&self) -> bool {
         self.baseline().is_some_and(Baseline::ramps)
     }
