@@ -26,6 +26,11 @@ fn record(truth: &System, samples: usize, seed: u64) -> Record {
 
 /// A small network beside the model, trained on what `truth` does.
 fn fit(truth: &System, of: &str, more: &str) -> (Fit, Record) {
+    fit_beside(MODEL, truth, of, more)
+}
+
+/// The same beside another model.
+fn fit_beside(model: &str, truth: &System, of: &str, more: &str) -> (Fit, Record) {
     let records = [record(truth, 900, 1), record(truth, 400, 2)];
     let text = format!(
         "structure = {{ hidden = [8], into = [\"v\"], of = [\"{of}\"] }}\nencoder.linear = {{ n_a = 5, n_b = 5 }}\n[training]\n\
@@ -34,10 +39,30 @@ fn fit(truth: &System, of: &str, more: &str) -> (Fit, Record) {
          finish = {{ legs = 3, steps = 250 }}\n"
     );
     let recipe: Recipe = toml::from_str(&text).unwrap();
-    let (start, _) = recipe.start(&system(MODEL), &records[..1], 0).unwrap();
+    let (start, _) = recipe.start(&system(model), &records[..1], 0).unwrap();
     let fit = recipe.training.fit(&start, &records[..1], &records[1..], &mut ()).unwrap();
     let [first, _] = records;
     (fit, first)
+}
+
+/// A force is what the model's own steps make of it: Euler's method of one step in a sample makes of a
+/// stiff damper something else than the exact solution does, by a third here.
+#[test]
+fn a_learned_force_is_read_by_the_steps_of_its_model() {
+    let model = "sampling_time = 0.05\nintegrator = { method = \"euler\", substeps = 1 }\n\
+                 [model.duffing]\nmass = 1.0\ndamping = 15.0\nstiffness = 40.0\n";
+    let hidden =
+        "[[effects]]\ninto = \"force\"\nof = \"v\"\neffect.linear = { coefficient = -3.0 }\n";
+    let truth = system(&format!("{model}{hidden}"));
+    let (fit, record) = fit_beside(model, &truth, "v", "optimiser = { rate = 5e-3 }");
+    let found = fit.model.added(&record).unwrap().unwrap();
+    let force = &found.channels[0];
+    let speed = found.coordinates.iter().find(|c| c.signal.name == "v").unwrap();
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let slope = product(&force.values, &speed.values) / product(&speed.values, &speed.values);
+    assert!((slope / -3.0 - 1.0).abs() < 0.05, "{slope}");
+    // it moves the speed alone, as a force does in one such step
+    assert!(force.share > 0.999, "{}", force.share);
 }
 
 #[test]

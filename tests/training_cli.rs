@@ -5,6 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use lacuna::data::{Random, Record};
 use serde_json::Value;
 
 const MODEL: &str = "sampling_time = 0.05\n\n[model.duffing]\nmass = 1.0\ndamping = 2.0\n\
@@ -250,4 +251,50 @@ fn an_exam_hides_effects_and_marks_what_is_found() {
     assert!(error["message"].as_str().unwrap().contains("case 2 hides hinge (coeff"), "{error}");
     place.put("bad.toml", &EXAM.replace("nulls = 1", "null = 1"));
     assert_eq!(place.refused("study --config bad.toml --out bad")["line"], 4);
+}
+
+/// A linear plant with noise inside, and a little at its sensor.
+fn disturbed(seed: u64) -> Record {
+    let mut random = Random::new(seed);
+    let ([mut p, mut v], mut u) = ([0.0, 0.0], 0.0);
+    let (mut inputs, mut outputs) = (vec![], vec![]);
+    for k in 0..2000 {
+        u = if k % 5 == 0 { 2.0 * random.normal() } else { u };
+        inputs.push(u);
+        outputs.push(p + 0.02 * random.normal());
+        [p, v] = [0.98 * p + 0.05 * v, -0.5 * p + 0.92 * v + 0.05 * u + 0.05 * random.normal()];
+    }
+    Record::new(0.05).input("u", inputs).unwrap().output("y", outputs).unwrap()
+}
+
+#[test]
+fn a_learned_gain_stands_in_the_model_file_and_predicts_from_it() {
+    let place = Place::new("gain");
+    place.put(
+        "model.toml",
+        "sampling_time = 0.05\n[model.lti]\nA = [[0.98, 0.05], [-0.5, 0.92]]\nB = [[0.0], [0.05]]\n\
+         C = [[1.0, 0.0]]\n",
+    );
+    place.put(
+        "fit.toml",
+        "structure = { hidden = [2] }\nencoder.linear = { n_a = 8, n_b = 8 }\n[training]\n\
+         length = 60\nbatch = 500\nepochs = 8\ninnovations = 1.0\noptimiser = { rate = 1e-2 }\n\
+         finish = { legs = 2, steps = 30 }\nvalidation = { lengths = [60], sections = 200 }\n",
+    );
+    disturbed(1).write_csv(place.0.join("est.csv")).unwrap();
+    disturbed(2).write_csv(place.0.join("test.csv")).unwrap();
+    place.json("fit --model model.toml --data est.csv --config fit.toml --out fitted --seed 1");
+    let learned: lacuna::train::Augmented =
+        serde_json::from_str(&place.read("fitted/weights.json")).unwrap();
+    let rmse = |model: &str, horizon: &str| {
+        let said = place.json(&format!("simulate --model {model} --data test.csv {horizon}"));
+        said["metrics"]["y"]["rmse"].as_f64().unwrap()
+    };
+    for horizon in [1, 7] {
+        let own = learned.predict(&disturbed(2), horizon).unwrap().rmse[0];
+        let read = rmse("fitted/model.toml", &format!("--horizon {horizon}"));
+        assert!((read / own - 1.0).abs() < 0.01, "{horizon}: {read} {own}");
+        assert!(read < 0.9 * rmse("fitted/model.toml", ""), "{horizon}: {read}");
+    }
+    assert!(place.read("fitted/model.toml").contains("error"));
 }

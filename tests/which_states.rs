@@ -3,9 +3,10 @@
 
 use std::time::Instant;
 
-use lacuna::data::Record;
+use lacuna::data::{Random, Record};
+use lacuna::evaluate::{Init, Simulation};
 use lacuna::system::System;
-use lacuna::train::{GroupKind, Recipe};
+use lacuna::train::{Augmented, GroupKind, Recipe};
 
 use super::learned_part::{noisy, system};
 
@@ -44,8 +45,12 @@ struct Pruned {
 }
 
 fn pruned(truth: &System, recipe: &Recipe, seed: u64) -> Pruned {
-    let records: [Record; 2] =
-        [noisy(truth, 1200, 10 + seed, NOISE), noisy(truth, 800, 50 + seed, NOISE)];
+    let records = [noisy(truth, 1200, 10 + seed, NOISE), noisy(truth, 800, 50 + seed, NOISE)];
+    pruned_on(&records, recipe, seed).0
+}
+
+/// The same on given records, with the model that is left.
+fn pruned_on(records: &[Record; 2], recipe: &Recipe, seed: u64) -> (Pruned, Augmented) {
     let (start, _) = recipe.start(&system(PLANT), &records[..1], seed).unwrap();
     let (learned, held) = records.split_at(1);
     let mut fit = recipe.training.fit(&start, learned, held, &mut ()).unwrap();
@@ -60,7 +65,35 @@ fn pruned(truth: &System, recipe: &Recipe, seed: u64) -> Pruned {
     }
     let at = |epoch: usize| fit.history[epoch].score.as_ref().unwrap().simulation[0];
     let errors = [at(0), at(fit.epoch), fit.model.simulate(&records[1]).unwrap().rmse[0]];
-    Pruned { gone, errors, said: parts.iter().map(ToString::to_string).collect() }
+    let said = parts.iter().map(ToString::to_string).collect();
+    (Pruned { gone, errors, said }, fit.model)
+}
+
+/// A record of a machine that something unmeasured pushes too.
+fn pushed(truth: &System, samples: usize, seed: u64) -> Record {
+    let mut random = Random::new(seed);
+    let known = noisy(truth, samples, seed, NOISE).inputs[0].values.clone();
+    let both: Vec<f64> = known.iter().map(|u| u + 4.0 * random.normal()).collect();
+    let drive = Record::new(0.05).input("u [N]", both).unwrap();
+    let y = Simulation::of(truth, &drive, Init::Samples(0)).unwrap().outputs.swap_remove(0).1;
+    let y = y.iter().map(|y| y + NOISE * random.normal()).collect::<Vec<_>>();
+    Record::new(0.05).input("u [N]", known).unwrap().output("y [m]", y).unwrap()
+}
+
+/// Beside a gain of innovations, states go that neither the simulation nor the prediction needs.
+#[test]
+fn what_neither_simulation_nor_prediction_needs_is_taken_out() {
+    let truth = system(&format!("{PLANT}{LAG}"));
+    let records = [pushed(&truth, 1200, 13), pushed(&truth, 800, 53)];
+    let mut recipe = recipe(20, 60, 3);
+    recipe.training.innovations = 0.5;
+    let (done, model) = pruned_on(&records, &recipe, 3);
+    assert_eq!(done.gone, 2, "{:#?}", done.said);
+    let said = done.said.iter().filter(|text| text.contains("is not needed")).count();
+    assert_eq!(said, 2, "{:#?}", done.said);
+    // the gain is still there, and one sample ahead is known better than without it
+    let one = model.predict(&records[1], 1).unwrap().rmse[0];
+    assert!(one < 0.5 * done.errors[2], "{one} {:?}", done.errors);
 }
 
 #[test]

@@ -244,7 +244,8 @@ pub struct Simulate {
     #[arg(long, value_name = "N")]
     pub init: Option<usize>,
     /// Predict every output K samples ahead from what was measured until then, instead of simulating
-    /// it; the noise that decides how measurements are weighed is estimated on the record
+    /// it; measurements are weighed by the gain of the model where it has one (K), else by the noise
+    /// that is estimated on the record
     #[arg(long, value_name = "K", conflicts_with = "init", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub horizon: Option<u64>,
 }

@@ -22,7 +22,12 @@ pub fn run(args: &Simulate, look: &Console) -> Result<u8, Failure> {
     let record = input::record_to_simulate(&args.data, &want, &args.columns, look)?;
     let run = match args.horizon {
         None => Simulation::of(&system, &record, input::init(args.init))?,
-        Some(horizon) => Predictor::predict(&system, &record, horizon as usize)?,
+        Some(horizon) => {
+            if Predictor::own_gain(&system).is_some() {
+                look.say("Predicted by the model's own gain K.");
+            }
+            Predictor::predict(&system, &record, horizon as usize)?
+        }
     };
     match &args.out {
         Some(_) if piped => {

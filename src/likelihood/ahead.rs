@@ -7,8 +7,11 @@
 //!
 //! The gain is the one that the noise's likelihood gives (a Riccati equation), so that the predictor
 //! of a plant that can be observed is stable by construction. K = 1 are the innovations' own
-//! predictions; K beyond what the plant remembers is a simulation.
+//! predictions; K beyond what the plant remembers is a simulation. A discrete model with a gain of its
+//! own predicts by that (`own_gain.rs`).
 //! Source: Ljung, "System Identification", 2nd ed., section 3.2; Kalman, J. Basic Eng. 82, 1960.
+
+use nalgebra::DMatrix;
 
 use super::error::LikelihoodError;
 use super::follow::Wanted;
@@ -23,8 +26,10 @@ use crate::system::{System, Transition};
 
 impl Predictor {
     /// Predictions of a record `horizon` samples (at least 1) ahead, in the form of a simulation:
-    /// between the innovations' own (1) and a free run (as many as the plant remembers). The noise
-    /// is the one that the record itself makes most likely.
+    /// between the innovations' own (1) and a free run (as many as the plant remembers). A discrete
+    /// model that has a gain ([`Law::innovation_gain`](crate::model::Law::innovation_gain): `K` of an
+    /// `lti`, or what was learned beside a baseline) predicts by it; the noise of any other is the one
+    /// that the record itself makes most likely.
     ///
     /// # Example
     ///
@@ -61,10 +66,15 @@ impl Predictor {
         horizon: usize,
     ) -> Result<Simulation, LikelihoodError> {
         let predictor = Self::new(system, std::slice::from_ref(record))?;
-        let NoiseModel::Predictor(noise) = predictor.fit_noise()?.noise else {
-            return Err(LikelihoodError::Diverges { sample: 0, time: 0.0 });
+        let ahead = match Self::own_gain(system) {
+            Some(gain) => predictor.ahead_by(&gain, horizon)?,
+            None => {
+                let NoiseModel::Predictor(noise) = predictor.fit_noise()?.noise else {
+                    return Err(LikelihoodError::Diverges { sample: 0, time: 0.0 });
+                };
+                predictor.ahead(&noise, horizon)?
+            }
         };
-        let ahead = predictor.ahead(&noise, horizon)?;
         let names = predictor.outputs().into_iter().map(|(name, _)| name);
         let outputs: Vec<(String, Vec<f64>)> = names.zip(ahead).collect();
         let metrics = outputs.iter().filter_map(|(name, values)| {
@@ -80,6 +90,12 @@ impl Predictor {
             initial_state: vec![],
             diverged_at: None,
         })
+    }
+
+    /// The gain of a discrete model that has one.
+    pub fn own_gain(system: &System) -> Option<DMatrix<f64>> {
+        let discrete = !system.signals().time.is_continuous();
+        discrete.then(|| system.model.innovation_gain()).flatten()
     }
 
     /// What every output is predicted to be `horizon` samples (at least 1) before it is measured,

@@ -34,6 +34,7 @@ mod laws;
 mod missing;
 mod model;
 mod noise;
+mod own_gain;
 mod parametrised;
 mod path;
 mod places;

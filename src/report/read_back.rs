@@ -25,6 +25,9 @@ pub struct ReadBack {
     coordinates: Vec<(Coordinate, Reading)>,
 }
 
+/// Share of what is added that rounds to nothing.
+const NO_FORCE: f64 = 0.005;
+
 impl ReadBack {
     /// Reads the learned part of a model along a record: one entry for what enters the states, and
     /// one for each output that something is added to.
@@ -62,6 +65,11 @@ impl ReadBack {
         let channel = &self.added.channel.name;
         let percent = |share: f64| format!("{:.0} %", 100.0 * share);
         let mut text = format!("The learned part enters `{channel}`");
+        if self.added.share < NO_FORCE {
+            return "The learned part enters no channel of the model: what it adds to the states is no \
+                    force at any of them."
+                .into();
+        }
         if self.added.share < 1.0 {
             let _ = write!(text, " ({} of what it adds)", percent(self.added.share));
         }

@@ -96,6 +96,12 @@ pub trait Law: Debug + Send + Sync {
         2
     }
 
+    /// Whether an answer runs other laws, an integrator or a loop, and is no formula of its own: what it
+    /// does is then recorded once and replayed, where it is asked again and again.
+    fn composed(&self) -> bool {
+        false
+    }
+
     /// Whether this is a discrete-time law whose inputs move along a straight line to the next
     /// sample (first-order hold): it then declares one channel per input, in which it finds how
     /// far that moves, u_{k+1} - u_k.

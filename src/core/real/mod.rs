@@ -27,6 +27,7 @@ mod isa;
 mod lanes;
 #[cfg(target_arch = "x86_64")]
 mod outlined;
+mod reverse;
 mod rules;
 mod scalar;
 mod tape;
@@ -41,6 +42,7 @@ pub use dual::Dual;
 pub use self::{
     isa::{Isa, recast},
     lanes::{F32x16, F64x8, InRegisters, Lanes},
+    reverse::{Leaf, Reverse},
     tape::{Binary, Given, Line, Node, Tape, Term, Unary},
     trace::Trace,
 };

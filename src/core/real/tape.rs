@@ -200,6 +200,7 @@ impl Tape {
 
 impl Unary {
     /// The value for a number of any kind.
+    #[inline(always)]
     pub fn of<R: Real>(self, x: R) -> R {
         match self {
             Self::Negative => -x,
@@ -223,6 +224,7 @@ impl Unary {
 
 impl Binary {
     /// The value for two numbers of any kind.
+    #[inline(always)]
     pub fn of<R: Real>(self, a: R, b: R) -> R {
         match self {
             Self::Add => a + b,

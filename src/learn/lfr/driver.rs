@@ -7,8 +7,10 @@ use crate::network::Row;
 use crate::real::Real;
 
 use super::Baseline;
+use super::adjoint::Adjoint;
 use super::block::Pace;
 use super::number::{Number, lanes, per_row, repeated};
+use super::timed::looks_at_time;
 
 /// Bytes of parameters that a law is asked with at once: a third of what is nearest.
 const NEAR: usize = 12 * 1024;
@@ -29,6 +31,10 @@ pub(crate) struct Driver<'a, E: Number> {
     pub(super) adjoint: bool,
     /// Whether the law has a kernel that takes a whole sample at once.
     pub(super) whole: bool,
+    /// What the law does, recorded: for its derivative, and for its outputs.
+    recorded: Option<[Adjoint; 2]>,
+    /// Whether its answers are computed from that too.
+    pub(super) replays: bool,
     /// What the law derives from its parameters, once.
     derived: Vec<f64>,
     pub(super) plain: Constants<E::Lanes>,
@@ -74,6 +80,8 @@ impl<'a, E: Number> Driver<'a, E> {
             ramps: baseline.ramps(),
             adjoint: false,
             whole: false,
+            recorded: None,
+            replays: false,
             derived: vec![],
             plain: empty,
             groups: vec![],
@@ -81,7 +89,18 @@ impl<'a, E: Number> Driver<'a, E> {
         driver.set(&baseline.theta());
         driver.adjoint = driver.free.is_empty() && driver.has_adjoint();
         driver.whole = driver.marches();
+        // where dual numbers would have to run the law more than once, or it runs others
+        if !driver.adjoint && (driver.groups.len() > 1 || law.composed()) {
+            driver.recorded = Adjoint::of_both(law, driver.sizes, &driver.theta);
+            driver.replays = law.composed() && driver.pace == Pace::Discrete;
+        }
         driver
+    }
+
+    /// What the law does when it is asked, where that is recorded.
+    pub(super) fn recorded(&self, ask: Ask) -> Option<&Adjoint> {
+        let [derivative, output] = self.recorded.as_ref()?;
+        Some(if ask == Ask::Output { output } else { derivative })
     }
 
     /// First direction along inputs, first along parameters, and one beyond the last.
@@ -276,22 +295,4 @@ fn one<'b, R: Copy>(block: &Block<'b, R>, pack: usize, time: R) -> Block<'b, R> 
         time,
         ..*block
     }
-}
-
-/// Whether a law gives other answers at other times, tried at times from a millisecond to a
-/// year and a handful of points.
-fn looks_at_time(law: &dyn Law) -> bool {
-    use crate::model::probe::value;
-    let sizes = Sizes::of(&law.signals());
-    crate::system::points(law, 3).into_iter().any(|mut point| {
-        [Ask::Derivative, Ask::Output].into_iter().any(|ask| {
-            point.time = 0.0;
-            let first = value(law, sizes, ask, &point);
-            (0..35).any(|power| {
-                point.time = 1e-3 * 2.0_f64.powi(power);
-                let other = value(law, sizes, ask, &point);
-                first.iter().zip(&other).any(|(a, b)| a.to_bits() != b.to_bits())
-            })
-        })
-    })
 }

@@ -1,10 +1,13 @@
 //! A baseline's law through one sample, forward and back, stage by stage for all packs of a
 //! block at once.
 
-use crate::model::{Ask, DIRECTIONS, LaneNumber, Way};
+mod pull;
+
+use crate::model::{Ask, LaneNumber, Way};
 use crate::network::Row;
 use crate::real::Real;
 
+use super::adjoint::Sweeps;
 use super::block::Pace;
 use super::combine;
 use super::driver::{Driver, Group, Sight};
@@ -31,6 +34,8 @@ pub(crate) struct Room<E: Number> {
     /// States and inputs as dual numbers, one pair per group of directions.
     duals: Vec<[Vec<E::Slopes>; 2]>,
     results: Vec<E::Slopes>,
+    /// For what was recorded of the law: its derivative, and its outputs.
+    sweeps: [Option<Sweeps<E::Lanes>>; 2],
     /// Derivatives along the free parameters, pack by pack.
     pub along_theta: Vec<E::Lanes>,
 }
@@ -68,6 +73,7 @@ impl<E: Number> Room<E> {
             along_u: zeros(n.u),
             duals: driver.groups.iter().map(pair).collect(),
             results: vec![E::Slopes::constant(0.0); packs * n.x.max(n.y)],
+            sweeps: [Ask::Derivative, Ask::Output].map(|ask| Some(driver.recorded(ask)?.room())),
             along_theta: zeros(driver.free.len()),
         }
     }
@@ -77,9 +83,11 @@ impl<E: Number> Room<E> {
         let plain = [&self.x, &self.sum, &self.k, &self.u[0], &self.u[1], &self.kept, &self.y];
         let back = [&self.lambda, &self.weight, &self.pulled, &self.pulled_u, &self.along_u];
         let plain: usize = plain.iter().chain(&back).map(|v| v.len()).sum();
+        let sweeps: usize = self.sweeps.iter().flatten().map(Sweeps::bytes).sum();
         let duals: usize = self.duals.iter().flatten().map(Vec::len).sum();
         (plain + self.along_theta.len() + self.w.len()) * size_of::<E::Lanes>()
             + (duals + self.results.len() + self.dual_w.len()) * size_of::<E::Slopes>()
+            + sweeps
     }
 
     /// Copies x and u in.
@@ -106,6 +114,10 @@ impl<E: Number> Room<E> {
     /// Advances x by one sample; with `keep`, `kept` holds the states at all stages.
     fn advance(&mut self, driver: &Driver<'_, E>, sight: Sight<'_, E>, keep: bool) {
         self.begin(driver, sight);
+        if keep && driver.pace == Pace::Discrete {
+            // its one stage stands at the sample itself
+            return self.kept[..self.x.len()].copy_from_slice(&self.x);
+        }
         let (h, tableau) = (driver.pace.step(), driver.pace.tableau());
         let size = self.x.len();
         let share = 1.0 / driver.pace.substeps() as f64;
@@ -136,6 +148,12 @@ impl<E: Number> Room<E> {
         if driver.whole && driver.march(sight, &mut self.kept, Way::Forward(lanes_mut(end))) {
             return;
         }
+        if driver.replays {
+            self.begin(driver, sight);
+            if self.replay(driver, sight, Ask::Derivative) {
+                return combine::collect(&self.k, lanes_mut(end), per_row::<E>());
+            }
+        }
         self.advance(driver, sight, false);
         combine::collect(&self.x, lanes_mut(end), per_row::<E>());
     }
@@ -143,9 +161,11 @@ impl<E: Number> Room<E> {
     /// h_base: the outputs now.
     pub fn output(&mut self, driver: &Driver<'_, E>, sight: Sight<'_, E>, y: &mut [Row<E>]) {
         self.begin(driver, sight);
-        let time = |p: usize| time::<E>(sight, p, 0.0);
-        let seen = [&self.x[..], &self.u[1], &self.w];
-        driver.ask(Ask::Output, &driver.plain, seen, time, &mut self.y);
+        if !self.replay(driver, sight, Ask::Output) {
+            let time = |p: usize| time::<E>(sight, p, 0.0);
+            let seen = [&self.x[..], &self.u[1], &self.w];
+            driver.ask(Ask::Output, &driver.plain, seen, time, &mut self.y);
+        }
         combine::collect(&self.y, lanes_mut(y), per_row::<E>());
     }
 
@@ -166,8 +186,7 @@ impl<E: Number> Room<E> {
             }
         }
         self.advance(driver, sight, true);
-        let zero = E::Lanes::constant(0.0);
-        let (packs, size) = (per_row::<E>(), self.x.len());
+        let (zero, packs, size) = (E::Lanes::constant(0.0), per_row::<E>(), self.x.len());
         combine::spread(lanes(along_end), &mut self.lambda, packs);
         self.along_u.fill(zero);
         let (h, tableau) = (driver.pace.step(), driver.pace.tableau());
@@ -217,60 +236,6 @@ impl<E: Number> Room<E> {
         combine::collect_added(&self.pulled, lanes_mut(along_x), packs);
         if driver.wants_u {
             combine::collect_added(&self.along_u, lanes_mut(along_u), packs);
-        }
-    }
-
-    /// `weight` times the law's derivatives at the kept state (or the present one): along the
-    /// states into `pulled`, along inputs and free parameters added.
-    fn pull(
-        &mut self,
-        driver: &Driver<'_, E>,
-        sight: Sight<'_, E>,
-        ask: Ask,
-        kept: Option<usize>,
-        later: f64,
-    ) {
-        let (n, packs) = (driver.sizes, per_row::<E>());
-        let x = kept.map_or(&self.x[..], |begin| &self.kept[begin..begin + self.x.len()]);
-        let u = &self.u[1][..];
-        if ask == Ask::Derivative && driver.adjoint {
-            let time = |p: usize| time::<E>(sight, p, later);
-            let to = [&mut self.pulled[..], &mut self.pulled_u[..]];
-            driver.pull([x, u, &self.weight[..packs * n.x]], time, to);
-            if driver.wants_u {
-                combine::plus(&mut self.along_u, &self.pulled_u);
-            }
-            return;
-        }
-        self.pulled.fill(E::Lanes::constant(0.0));
-        let count = n.answer(ask);
-        let results = &mut self.results[..packs * count];
-        let weight = &self.weight[..packs * count];
-        let [inputs, theta, _] = driver.directions();
-        for (group, [dual_x, dual_u]) in driver.groups.iter().zip(&mut self.duals) {
-            combine::values(E::parts_mut(dual_x), x);
-            combine::values(E::parts_mut(dual_u), u);
-            let time = |p: usize| {
-                let mut dual = E::Slopes::constant(0.0);
-                E::parts_mut(std::slice::from_mut(&mut dual))[0].value = time::<E>(sight, p, later);
-                dual
-            };
-            driver.ask(ask, &group.constants, [dual_x, dual_u, &self.dual_w], time, results);
-            let kinds = [
-                (&mut self.pulled, n.x, 0..inputs),
-                (&mut self.along_u, n.u, inputs..theta),
-                (&mut self.along_theta, driver.free.len(), theta..theta + driver.free.len()),
-            ];
-            for (to, of, kind) in kinds {
-                let (from, end) =
-                    (group.range.start.max(kind.start), group.range.end.min(kind.end));
-                if from < end {
-                    let slopes = from - group.range.start..end - group.range.start;
-                    debug_assert!(slopes.end <= DIRECTIONS);
-                    let (base, results) = (from - kind.start, E::parts(results));
-                    combine::pull(to, of, base, slopes, weight, results, count, packs);
-                }
-            }
         }
     }
 

@@ -12,6 +12,7 @@
 //! z without a state in it is an algebraic loop only if every block along it really passes
 //! it on; real loops are solved in every sample by Newton's method, with exact derivatives.
 
+mod adjoint;
 mod block;
 mod closed_loop;
 mod combine;
@@ -35,6 +36,7 @@ mod signal;
 mod solo;
 mod standalone;
 mod structure;
+mod timed;
 mod work;
 
 pub use closed_loop::{ClosedLoop, Controller};

@@ -2,6 +2,7 @@
 
 use std::sync::OnceLock;
 
+use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::model::{
@@ -12,12 +13,13 @@ use crate::system::System;
 use super::compiled::{Compiled, gather, row};
 use super::program::{Op, Place, Program};
 use super::solo;
-use super::{Baseline, Block, Interconnection, Learned, LfrError};
+use super::{Baseline, Block, Interconnection, Learned, LfrError, Sink, Source};
 
 /// An augmented model (Hoekstra et al., eq. `augmentation_structure`) as a discrete-time
 /// model: it simulates, can be estimated, diagnosed and extended like any other. Its states
 /// are the baseline's and then `xa1`.., its parameters the baseline's. The prediction error
-/// ê is 0, as in every free run.
+/// ê is 0, as in every free run; what S hands from it to the states is the gain by which the model
+/// predicts.
 ///
 /// # Example
 ///
@@ -245,6 +247,10 @@ impl Law for AugmentedModel {
         }
     }
 
+    fn composed(&self) -> bool {
+        true
+    }
+
     fn ramped(&self) -> bool {
         self.baseline().is_some_and(Baseline::ramps)
     }
@@ -256,6 +262,18 @@ impl Law for AugmentedModel {
             format!("{}.{}", model.typetag_name(), model.key(parameter))
         });
         format!("blocks.{}.baseline.system.model.{inner}", number.unwrap_or(0))
+    }
+
+    /// What S hands from errors to states; none where errors enter anything else, which no gain says.
+    fn innovation_gain(&self) -> Option<DMatrix<f64>> {
+        let mut gain: Option<DMatrix<f64>> = None;
+        for (to, from, entry) in self.of.s.entries() {
+            let Source::Error(output) = from else { continue };
+            let Sink::State(state) = to else { return None };
+            let empty = || DMatrix::zeros(self.of.states, self.of.outputs);
+            gain.get_or_insert_with(empty)[(state, output)] = entry.value;
+        }
+        gain
     }
 }
 

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::fit::Fit;
 use super::groups::{Group, GroupKind, groups};
+use super::innovations::{judged, judged_at};
 use super::shooting::{Arithmetic, Shooting};
 use super::validate::{Scorer, Validation};
 use super::{Augmented, TrainError};
@@ -53,20 +54,42 @@ impl std::fmt::Display for Ablation {
 ///
 /// If the records do not fit the model.
 pub fn ablate(fit: &mut Fit, records: &[Record], prune: bool) -> Result<Vec<Ablation>, TrainError> {
+    let settings = Validation { lengths: vec![1], ..Validation::default() };
+    let ones = vec![1.0; fit.model.model.outputs];
+    let by = By { settings: &settings, length: 1, deviations: &ones, innovations: 0.0 };
+    ablate_by(fit, records, prune, &by)
+}
+
+/// What decides whether a part is needed.
+pub(super) struct By<'a> {
+    pub settings: &'a Validation,
+    /// Samples in a section.
+    pub length: usize,
+    /// What each output's error is counted in.
+    pub deviations: &'a [f64],
+    /// Weight of the likelihood of innovations beside the simulation.
+    pub innovations: f64,
+}
+
+/// The same where predictions may count beside the simulation: a part is then needed that either of
+/// them needs, by the number that training chose its model by.
+pub(super) fn ablate_by(
+    fit: &mut Fit,
+    records: &[Record],
+    prune: bool,
+    by: &By<'_>,
+) -> Result<Vec<Ablation>, TrainError> {
     let model = fit.model.clone();
     let all = groups(&model.model, model.signals().as_ref());
-    let settings = Validation { lengths: vec![1], ..Validation::default() };
-    let shooting = Shooting { length: 1, threads: 1, arithmetic: Arithmetic::Double };
-    let mut scorer = Scorer::new(&model, records, &settings, shooting)?;
-    let ones = vec![1.0; model.model.outputs];
-    let mut error = |parameters: &[f64]| -> Result<f64, TrainError> {
-        Ok(scorer.score(parameters)?.whole(&ones))
-    };
+    let shooting = Shooting { length: by.length, threads: 1, arithmetic: Arithmetic::Double };
+    let mut scorer = Scorer::new(&model, records, by.settings, shooting)?;
+    let mut score = |parameters: &[f64]| scorer.score(parameters);
     let mut present = model.parameters();
-    let mut whole = error(&present)?;
+    let mut whole = score(&present)?;
     let mut found: Vec<Ablation> = vec![];
     for group in &all {
-        let ratio = error(&without(&present, group))? / whole;
+        let ratio =
+            score(&without(&present, group))?.whole(by.deviations) / whole.whole(by.deviations);
         found.push(Ablation { kind: group.kind, name: group.name.clone(), ratio, removed: false });
     }
     loop {
@@ -74,17 +97,18 @@ pub fn ablate(fit: &mut Fit, records: &[Record], prune: bool) -> Result<Vec<Abla
             return Ok(found);
         }
         let mut least: Option<(usize, f64)> = None;
+        let most = judged_at(&whole, by.deviations, by.innovations, NOT_NEEDED);
         for (i, group) in all.iter().enumerate().filter(|(i, _)| !found[*i].removed) {
             let there = group.entries.iter().any(|&entry| present[entry] != 0.0);
-            let ratio = error(&without(&present, group))? / whole;
-            if there && ratio <= NOT_NEEDED && least.is_none_or(|(_, best)| ratio < best) {
-                least = Some((i, ratio));
+            let other = judged(&score(&without(&present, group))?, by.deviations, by.innovations);
+            if there && other <= most && least.is_none_or(|(_, best)| other < best) {
+                least = Some((i, other));
             }
         }
         let Some((i, _)) = least else { break };
         found[i].removed = true;
         present = without(&present, &all[i]);
-        whole = error(&present)?.max(f64::MIN_POSITIVE);
+        whole = score(&present)?;
     }
     fit.model.set_parameters(&present)?;
     Ok(found)

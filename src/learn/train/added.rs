@@ -1,11 +1,11 @@
 //! What a learned part adds, as a signal in a channel of the model that it stands beside.
 //!
 //! ```text
-//! d_k = x_{k+1} - f_base(x_k, u_k),   d_k = D_k f_k + rest,   D_k = int_0^T exp(A s) G ds
+//! d_k = x_{k+1} - f_base(x_k, u_k),   d_k = D_k f_k + rest
 //! ```
 //!
-//! with D_k the response of the states to a channel that is held over a sample (Van Loan, IEEE
-//! Trans. Autom. Control 23, 1978), A and G the slopes of the model there. f_k is the least-squares
+//! with D_k what the model's integrator makes of a channel that is held over a sample (`held` in
+//! `entered.rs`), from the slopes of the model there. f_k is the least-squares
 //! solution, states in units of their spreads; the share says how much of d a single channel makes
 //! up for.
 

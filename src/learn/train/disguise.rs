@@ -22,6 +22,11 @@ use crate::lfr::{Block, Interconnection};
 /// cubed, is where central differences are best.
 const STEP: f64 = 6e-6;
 
+/// Rounding over the size of a sensitivity beyond which it is no sensitivity.
+const BLURRED: f64 = 0.1;
+/// Share that is more than 0 %.
+const SAID: f64 = 0.005;
+
 /// What a learned part does in the place of parameters.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct Disguise {
@@ -51,6 +56,10 @@ impl std::fmt::Display for Disguise {
             "{:.0} % of what the learned part adds is what other parameters would do",
             100.0 * self.share
         )?;
+        // what nothing would do needs no values
+        if self.share < SAID {
+            return Ok(());
+        }
         let mut join = ": ";
         for Change { parameter, unit, value, change } in &self.changes {
             let space = if unit.is_empty() { "" } else { " " };
@@ -86,11 +95,23 @@ impl Augmented {
         let (theta, signals) = (baseline.theta(), baseline.system.signals());
         let columns = sensitivities(&bare, &visited, &scales)?;
         let Some(c) = columns.filter(|_| total > 0.0) else { return Ok(None) };
-        // parameters that do nothing here, and those that others make up for, change nothing
+        // parameters that do nothing here, and those that others make up for, change nothing, as far
+        // as differences of rounded states can tell
+        let rounded =
+            f64::EPSILON * DVector::from_vec(spread(&without, &nothing(&without), &scales)).norm();
         let sizes: Vec<f64> = c.column_iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
-        let unit = DMatrix::from_fn(c.nrows(), c.ncols(), |i, j| c[(i, j)] / sizes[j]);
+        let steps = theta.iter().map(|&value| step(value));
+        let noise: Vec<f64> =
+            steps.zip(&sizes).map(|(h, size)| rounded / (2.0 * h * size)).collect();
+        let unit = DMatrix::from_fn(c.nrows(), c.ncols(), |i, j| match noise[j] < BLURRED {
+            true => c[(i, j)] / sizes[j],
+            false => 0.0,
+        });
+        let seen = noise.iter().filter(|noise| **noise < BLURRED);
+        let cutoff = 10.0 * seen.map(|noise| noise * noise).sum::<f64>().sqrt();
         let d = DVector::from_vec(added);
-        let Ok(found) = unit.clone().svd(true, true).solve(&d, 1e-8) else { return Ok(None) };
+        let solved = unit.clone().svd(true, true).solve(&d, cutoff.max(1e-8));
+        let Ok(found) = solved else { return Ok(None) };
         let left = (&d - unit * &found).norm_squared();
         let changes = signals.parameters.iter().zip(&theta).zip(found.iter().zip(&sizes));
         let changes = changes.map(|((parameter, &value), (found, size))| Change {
@@ -117,12 +138,22 @@ pub(super) fn sensitivities(
     };
     let (theta, mut columns) = (baseline.theta(), vec![]);
     for (j, value) in theta.iter().enumerate() {
-        let step = STEP * if *value == 0.0 { 1.0 } else { value.abs() };
+        let step = step(*value);
         let at = |to: f64| stepped(&changed(bare, place, &theta, j, to), visited);
         let (above, below) = (at(value + step)?, at(value - step)?);
         columns.push(DVector::from_vec(spread(&above, &below, scales)) / (2.0 * step));
     }
     Ok((!columns.is_empty()).then(|| DMatrix::from_columns(&columns)))
+}
+
+/// Step of the differences along a parameter of this value.
+fn step(value: f64) -> f64 {
+    STEP * if value == 0.0 { 1.0 } else { value.abs() }
+}
+
+/// The same steps, with all states at 0.
+fn nothing(of: &[[Vec<f64>; 2]]) -> Vec<[Vec<f64>; 2]> {
+    of.iter().map(|pair| pair.clone().map(|states| vec![0.0; states.len()])).collect()
 }
 
 /// How far next states are apart, sample by sample and state by state.

@@ -8,7 +8,7 @@ use crate::encoder::Spread;
 use crate::lfr::{Baseline, Sampled};
 use crate::model::probe::{Point, equilibrium, matrices, value};
 use crate::model::{Ask, Law, Quantity, Signal};
-use crate::system::{Base, Origin, System};
+use crate::system::{Base, Method, Origin, System};
 
 /// Points of the model's own curve.
 const POINTS: usize = 61;
@@ -74,6 +74,9 @@ pub(super) fn entered(
         .map(|i| Spread::of(&visited.x.iter().map(|x| x[i]).collect::<Vec<f64>>()).scale)
         .collect();
     let theta = baseline.theta();
+    let integrator = inner.sampling.integrator;
+    let order = if integrator.method == Method::Euler { 1 } else { 4 };
+    let pace = Pace { order, substeps: integrator.substeps.max(1), sampling_time };
     let channels: Vec<(Signal, usize)> = (base.targets.entries.iter())
         .filter_map(|(signal, origin)| match origin {
             Origin::Own(c) => Some((signal.clone(), *c)),
@@ -92,15 +95,8 @@ pub(super) fn entered(
             time: visited.time[k],
         };
         let own = matrices(law, n, &at);
-        let (nx, nw) = (n.x, own.g.ncols());
-        let response = if continuous {
-            let mut both = DMatrix::zeros(nx + nw, nx + nw);
-            both.view_mut((0, 0), (nx, nx)).copy_from(&own.a);
-            both.view_mut((0, nx), (nx, nw)).copy_from(&own.g);
-            (both * sampling_time).exp().view((0, nx), (nx, nw)).into_owned()
-        } else {
-            own.g
-        };
+        let nx = n.x;
+        let response = if continuous { held(&own.a, &own.g, &pace) } else { own.g };
         let d = DVector::from_fn(nx, |i, _| d[i] / scales[i]);
         total += d.norm_squared();
         for (c, (_, number)) in channels.iter().enumerate() {
@@ -147,6 +143,39 @@ pub(super) fn entered(
         Coordinate { signal, values, own }
     });
     Ok((channels, coordinates.collect()))
+}
+
+/// Order of an integrator and its steps in a sample.
+struct Pace {
+    order: usize,
+    substeps: usize,
+    sampling_time: f64,
+}
+
+/// What an integrator of order q (Euler's method, or the Runge-Kutta method of four stages) makes of
+/// a channel that is held over a sample of m steps h, the model being linear there:
+///
+/// ```text
+/// D = sum_{j<m} Phi^j Gamma,   Phi = sum_{i<=q} (h A)^i / i!,   Gamma = h sum_{i<q} (h A)^i / (i+1)! G
+/// ```
+///
+/// (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, 2nd ed., 1993, ch. II). As
+/// the model takes its steps, not as the equations would have them.
+fn held(a: &DMatrix<f64>, g: &DMatrix<f64>, pace: &Pace) -> DMatrix<f64> {
+    let h = pace.sampling_time / pace.substeps as f64;
+    let (ha, one) = (a * h, DMatrix::identity(a.nrows(), a.nrows()));
+    let (mut term, mut phi) = (one.clone(), one.clone());
+    let mut gamma = DMatrix::zeros(a.nrows(), a.nrows());
+    for i in 1..=pace.order {
+        gamma += &term * (h / i as f64);
+        term = &term * &ha / i as f64;
+        phi += &term;
+    }
+    let (gamma, mut done) = (gamma * g, DMatrix::zeros(g.nrows(), g.ncols()));
+    for _ in 0..pace.substeps {
+        done = &phi * done + &gamma;
+    }
+    done
 }
 
 /// What a model gives into a channel where one state alone moves away from its equilibrium.

@@ -122,7 +122,7 @@ impl Gain {
 }
 
 /// One number to compare models by: the error of the simulation, or with innovations both terms of
-/// the loss, on records that it was not learned from.
+/// the loss, on records that it was not learned from. Infinite where something diverged.
 pub(super) fn judged(score: &Score, deviations: &[f64], weight: f64) -> f64 {
     let whole = score.whole(deviations);
     if weight == 0.0 {
@@ -130,8 +130,20 @@ pub(super) fn judged(score: &Score, deviations: &[f64], weight: f64) -> f64 {
     }
     let ahead = score.ahead.last().map_or(&[][..], |last| last);
     let shares = ahead.iter().zip(deviations);
-    let logs = shares.map(|(error, deviation)| (error / deviation).max(ROUNDING.sqrt()).ln());
+    // what is not a number has diverged, and would be the smallest of all
+    let log = |share: f64| match share.is_nan() {
+        true => f64::INFINITY,
+        false => share.max(ROUNDING.sqrt()).ln(),
+    };
+    let logs = shares.map(|(error, deviation)| log(error / deviation));
     0.5 * whole * whole + weight * logs.sum::<f64>()
+}
+
+/// The same of a model whose errors are all so many times as large.
+pub(super) fn judged_at(score: &Score, deviations: &[f64], weight: f64, times: f64) -> f64 {
+    let larger = |errors: &Vec<f64>| errors.iter().map(|error| error * times).collect();
+    let ahead = score.ahead.iter().map(larger).collect();
+    judged(&Score { ahead, simulation: larger(&score.simulation) }, deviations, weight)
 }
 
 /// A and C of the baseline about the middle of its record.
@@ -165,4 +177,26 @@ pub(super) fn add_gain(augmented: &mut Augmented) -> Result<(), TrainError> {
         }
     }
     Ok(augmented.model.check()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_predictor_that_diverges_is_not_taken_for_a_perfect_one() {
+        let score = |ahead: f64| Score { ahead: vec![vec![ahead]], simulation: vec![0.5] };
+        let of = |ahead: f64| judged(&score(ahead), &[1.0], 1.0);
+        assert!(of(0.1) < of(0.2) && of(0.2) < of(f64::INFINITY));
+        assert_eq!(of(f64::NAN), f64::INFINITY);
+    }
+
+    #[test]
+    fn errors_a_share_larger_are_judged_by_both_terms() {
+        let score = Score { ahead: vec![vec![0.2]], simulation: vec![0.5] };
+        let larger = Score { ahead: vec![vec![0.21]], simulation: vec![0.525] };
+        let (at, of) = (judged_at(&score, &[1.0], 0.7, 1.05), judged(&larger, &[1.0], 0.7));
+        assert!((at - of).abs() < 1e-15);
+        assert!((judged_at(&score, &[1.0], 0.0, 1.05) - 1.05 * 0.5).abs() < 1e-15);
+    }
 }

@@ -2,13 +2,13 @@
 //! again, without the penalties that drew it to 0 (relaxed lasso: Meinshausen, Comput. Stat. Data
 //! Anal. 52, 2007; backward elimination: Miller, *Subset Selection in Regression*, 2nd ed., 2002).
 
-use super::ablate::{Ablation, ablate, without};
+use super::ablate::{Ablation, By, ablate, ablate_by, without};
 use super::fit::{Fit, Follow};
 use super::groups::Group;
-use super::innovations::Gain;
+use super::innovations::{Gain, judged, judged_at};
 use super::scale::Units;
 use super::task::Task;
-use super::validate::Scorer;
+use super::validate::{Score, Scorer};
 use super::whole::leg;
 use super::{TrainError, Trainer};
 use crate::data::Record;
@@ -24,7 +24,8 @@ impl Trainer {
     ///
     /// Signals of a kind that a penalty drew to 0 are judged after what is left has learned again,
     /// as one of two that share a task is missed only until the other has taken it over; all
-    /// others as they are. The model that stays has learned again without the penalties.
+    /// others as they are. What counts is what training chose its model by: the simulation, and with
+    /// [`Trainer::innovations`] the predictions beside it. The model that stays has learned again without the penalties.
     ///
     /// # Errors
     ///
@@ -39,7 +40,16 @@ impl Trainer {
         let groups = fit.model.groups();
         let drawn = groups.iter().any(|group| self.sparse.on(group.kind) > 0.0);
         if !self.sparse.prune || !drawn || self.sparse.refit == 0 || validation.is_empty() {
-            return ablate(fit, validation, self.sparse.prune);
+            return match self.innovations == 0.0 {
+                true => ablate(fit, validation, self.sparse.prune),
+                false => {
+                    let (settings, length) = (&self.validation, self.length);
+                    let (model, innovations) = (fit.model.clone(), self.innovations);
+                    let deviations = &Task::of(self, &model, training)?.deviations;
+                    let by = By { settings, length, deviations, innovations };
+                    ablate_by(fit, validation, self.sparse.prune, &by)
+                }
+            };
         }
         let mut found = ablate(fit, validation, false)?;
         let model = fit.model.clone();
@@ -47,8 +57,8 @@ impl Trainer {
         let whole = model.parameters();
         let Some(mut best) = again.learn(&whole, &[], follow)? else { return Ok(found) };
         // penalties off, the model may have become worse where it was not learned from
-        let kept = again.error(&whole)?;
-        if kept < best.1 {
+        let kept = again.score(&whole)?;
+        if again.judged(&kept) < again.judged(&best.1) {
             best = (whole, kept);
         }
         let mut gone: Vec<usize> = vec![];
@@ -56,19 +66,21 @@ impl Trainer {
             let open = |i: &usize| self.sparse.on(groups[*i].kind) > 0.0 && !gone.contains(i);
             let mut order = vec![];
             for i in (0..groups.len()).filter(open) {
-                order.push((again.error(&without(&best.0, &groups[i]))?, i));
+                let plain = again.score(&without(&best.0, &groups[i]))?;
+                order.push((again.judged(&plain), plain, i));
             }
             order.sort_by(|a, b| a.0.total_cmp(&b.0));
-            for (plain, i) in order {
+            let most = judged_at(&best.1, &again.task.deviations, self.innovations, AGAIN);
+            for (judged, plain, i) in order {
                 let mut out: Vec<&Group> = gone.iter().map(|&other| &groups[other]).collect();
                 out.push(&groups[i]);
                 let start = without(&best.0, &groups[i]);
                 let Some(mut other) = again.learn(&start, &out, follow)? else { break 'all };
                 // learning again may lead away from what was not learned from
-                if plain < other.1 {
+                if judged < again.judged(&other.1) {
                     other = (start, plain);
                 }
-                if other.1 <= AGAIN * best.1 {
+                if again.judged(&other.1) <= most {
                     best = other;
                     gone.push(i);
                     found[i].removed = true;
@@ -107,14 +119,14 @@ impl<'a> Again<'a> {
         Ok(Self { trainer, model, task, scorer })
     }
 
-    /// Parameters after some steps from these, groups of them held, with their error; nothing if
+    /// Parameters after some steps from these, groups of them held, with their errors; nothing if
     /// somebody asked for the end.
     fn learn(
         &mut self,
         parameters: &[f64],
         held: &[&Group],
         follow: &mut dyn Follow,
-    ) -> Result<Option<(Vec<f64>, f64)>, TrainError> {
+    ) -> Result<Option<(Vec<f64>, Score)>, TrainError> {
         let held = held.iter().flat_map(|group| group.entries.iter().copied()).collect();
         let more = self.model.encoder.weights().len();
         let units = Units::of(&self.model.model, more, self.trainer.penalty)
@@ -133,11 +145,15 @@ impl<'a> Again<'a> {
         if self.trainer.orthogonal {
             self.task.loss.orthogonalise(&mut parameters);
         }
-        let error = self.error(&parameters)?;
-        Ok(Some((parameters, error)))
+        let score = self.score(&parameters)?;
+        Ok(Some((parameters, score)))
     }
 
-    fn error(&mut self, parameters: &[f64]) -> Result<f64, TrainError> {
-        Ok(self.scorer.score(parameters)?.whole(&self.task.deviations))
+    fn score(&mut self, parameters: &[f64]) -> Result<Score, TrainError> {
+        self.scorer.score(parameters)
+    }
+
+    fn judged(&self, score: &Score) -> f64 {
+        judged(score, &self.task.deviations, self.trainer.innovations)
     }
 }

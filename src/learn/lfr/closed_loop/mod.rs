@@ -207,6 +207,10 @@ impl Law for ClosedLoop {
         faults
     }
 
+    fn composed(&self) -> bool {
+        true
+    }
+
     fn answer(&self, ask: Ask, call: Call<'_>) {
         match call {
             Call::F64(block, out) => self.reply(ask, block, out),

@@ -154,6 +154,10 @@ impl Law for Sampled {
         }
     }
 
+    fn composed(&self) -> bool {
+        true
+    }
+
     fn ramped(&self) -> bool {
         self.made().as_ref().is_ok_and(|made| made.ramped)
     }

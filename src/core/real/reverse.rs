@@ -1,0 +1,300 @@
+//! Reverse mode over a recorded computation.
+//!
+//! ```text
+//! v_i = φ_i(v_j, v_k);   from the last i to the first: v̄_j += v̄_i ∂φ_i/∂v_j,  v̄_k += v̄_i ∂φ_i/∂v_k
+//! ```
+//!
+//! One sweep forward and one back give the slopes of a weighted sum of all results along everything
+//! that was given, whatever their number (the cheap gradient principle: Griewank and Walther,
+//! Evaluating Derivatives, 2nd ed., 2008, ch. 3 and 4). Kinks follow the rule of dual numbers.
+
+use super::tape::{Binary, Given, Node, Tape, Term, Unary};
+use super::{Dual, InRegisters, Real};
+use crate::per_lanes;
+
+/// One operation; operands are numbers of leaves and of operations before it.
+#[derive(Debug, Clone, Copy)]
+enum Op {
+    One(Unary, u32),
+    Two(Binary, u32, u32),
+    Choice(u32, u32, u32),
+}
+
+/// What a recorded computation begins with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Leaf {
+    /// A constant.
+    Constant(f64),
+    /// Something given from outside.
+    Given(Given),
+}
+
+/// A tape made ready for sweeps: what its results are made of, leaves first.
+///
+/// # Example
+///
+/// ```
+/// use lacuna::real::{F64x8, Given, Leaf, Real, Reverse, Tape, Trace};
+///
+/// let (y, tape) = Tape::record(|| {
+///     let x = Trace::given(Given::State(0), 0.5);
+///     x.sin() * x
+/// });
+/// let reverse = Reverse::of(&tape, &[y.node(&tape)]).unwrap();
+/// assert_eq!(reverse.leaves(), [Leaf::Given(Given::State(0))]);
+/// let x = F64x8::constant(0.5);
+/// let [mut values, mut slopes] = reverse.room::<F64x8>();
+/// values[..Reverse::TOGETHER].fill(x);
+/// reverse.forward(&mut values);
+/// let weights = vec![F64x8::constant(2.0); Reverse::TOGETHER];
+/// reverse.back(&values, &mut slopes, &weights);
+/// let slope = 2.0 * (0.5_f64.cos() * 0.5 + 0.5_f64.sin());
+/// assert!((slopes[0].lane(0) - slope).abs() < 1e-15);
+/// ```
+#[derive(Debug, Clone)]
+pub struct Reverse {
+    leaves: Vec<Leaf>,
+    ops: Vec<Op>,
+    /// The number of each result; none where it is a constant.
+    roots: Vec<Option<u32>>,
+}
+
+impl Reverse {
+    /// Packs of numbers that one sweep takes together: value `p` of number `i` stands at
+    /// `i * TOGETHER + p`.
+    pub const TOGETHER: usize = 4;
+
+    /// Sweeps over what some results are made of, a constant being `None`; `None` where a delay line
+    /// is among it, which a single step does not know.
+    pub fn of(tape: &Tape, results: &[Option<Node>]) -> Option<Self> {
+        let terms = tape.terms();
+        let mut needed = vec![false; terms.len()];
+        results.iter().flatten().for_each(|&node| needed[node as usize] = true);
+        for i in (0..terms.len()).rev() {
+            if needed[i] {
+                terms[i].operands().for_each(|operand| needed[operand as usize] = true);
+            }
+        }
+        let mut leaves = vec![];
+        let mut number = vec![0_u32; terms.len()];
+        for (i, term) in terms.iter().enumerate().filter(|(i, _)| needed[*i]) {
+            let leaf = match *term {
+                Term::Constant(bits) => Leaf::Constant(f64::from_bits(bits)),
+                Term::Given(given) => Leaf::Given(given),
+                _ => continue,
+            };
+            number[i] = leaves.len() as u32;
+            leaves.push(leaf);
+        }
+        let mut ops = vec![];
+        for (i, term) in terms.iter().enumerate().filter(|(i, _)| needed[*i]) {
+            let at = |node: Node| number[node as usize];
+            let op = match *term {
+                Term::Constant(_) | Term::Given(_) => continue,
+                Term::One(function, a) => Op::One(function, at(a)),
+                Term::Two(function, a, b) => Op::Two(function, at(a), at(b)),
+                Term::Choice(a, b, c) => Op::Choice(at(a), at(b), at(c)),
+                Term::PastHeld { .. } | Term::PastLine { .. } => return None,
+            };
+            number[i] = (leaves.len() + ops.len()) as u32;
+            ops.push(op);
+        }
+        let roots = results.iter().map(|node| node.map(|node| number[node as usize])).collect();
+        Some(Self { leaves, ops, roots })
+    }
+
+    /// What it begins with: the first numbers.
+    pub fn leaves(&self) -> &[Leaf] {
+        &self.leaves
+    }
+
+    /// Leaves and operations.
+    fn count(&self) -> usize {
+        self.leaves.len() + self.ops.len()
+    }
+
+    /// Room for the values of all numbers and for their slopes, constants filled in.
+    pub fn room<R: InRegisters>(&self) -> [Vec<R>; 2] {
+        let zeros = || vec![R::constant(0.0); self.count() * Self::TOGETHER];
+        let mut values = zeros();
+        for (leaf, values) in self.leaves.iter().zip(values.chunks_exact_mut(Self::TOGETHER)) {
+            if let Leaf::Constant(value) = leaf {
+                values.fill(R::constant(*value));
+            }
+        }
+        [values, zeros()]
+    }
+
+    /// Computes all values, those of the leaves being given.
+    pub fn forward<R: InRegisters>(&self, values: &mut [R]) {
+        forward(&self.ops, self.leaves.len(), values);
+    }
+
+    /// Packs of a result whose values are there; `None` where it is a constant.
+    pub fn result<'r, R>(&self, values: &'r [R], number: usize) -> Option<&'r [R]> {
+        self.roots[number].map(|root| &values[root as usize * Self::TOGETHER..][..Self::TOGETHER])
+    }
+
+    /// The slopes of the sum of all results, each times its weight (laid out as the values), along
+    /// every leaf. Slopes have to be 0 before; those of the leaves have to be set to 0 by whoever has read
+    /// them, all others are.
+    pub fn back<R: InRegisters>(&self, values: &[R], slopes: &mut [R], weights: &[R]) {
+        for (root, weights) in self.roots.iter().zip(weights.chunks_exact(Self::TOGETHER)) {
+            let Some(root) = root else { continue };
+            let to = slopes[*root as usize * Self::TOGETHER..].iter_mut();
+            to.zip(weights).for_each(|(to, &weight)| *to += weight);
+        }
+        backward(&self.ops, self.leaves.len(), values, slopes);
+    }
+}
+
+const N: usize = Reverse::TOGETHER;
+
+/// A number's packs.
+#[inline(always)]
+fn packs<R: Copy>(of: &[R], i: u32) -> [R; N] {
+    let from = i as usize * N;
+    std::array::from_fn(|p| of[from + p])
+}
+
+#[inline(always)]
+fn map<R: Real>(mut x: [R; N], f: Unary) -> [R; N] {
+    for x in &mut x {
+        *x = f.of(*x);
+    }
+    x
+}
+
+#[inline(always)]
+fn join<R: Real>(mut x: [R; N], y: [R; N], f: Binary) -> [R; N] {
+    for p in 0..N {
+        x[p] = f.of(x[p], y[p]);
+    }
+    x
+}
+
+/// Adds weight times slope; nothing weighs nothing, however steep.
+#[inline(always)]
+fn add<R: Real>(slopes: &mut [R], to: u32, weight: [R; N], slope: [R; N]) {
+    let to = &mut slopes[to as usize * N..][..N];
+    for p in 0..N {
+        let zero = R::constant(0.0);
+        to[p] += weight[p].abs().where_positive(weight[p] * slope[p], zero);
+    }
+}
+
+/// One arm for each function, so that each is compiled as itself.
+macro_rules! each {
+    ($function:expr, $kind:ident: $($name:ident),* => $with:ident $work:expr) => {
+        match $function {
+            $($kind::$name => {
+                const $with: $kind = $kind::$name;
+                $work
+            })*
+        }
+    };
+}
+
+per_lanes! {
+    /// All values after the leaves'.
+    fn forward[; R](ops: &[Op], leaves: usize, values: &mut [R]) {
+        for (i, op) in ops.iter().enumerate() {
+            let value = match *op {
+                Op::One(f, a) => {
+                    let x = packs(values, a);
+                    each!(f, Unary: Negative, Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh, Tanh, Exp,
+                        Ln, Sqrt, Abs, Signum => F map(x, F))
+                }
+                Op::Two(f, a, b) => {
+                    let (x, y) = (packs(values, a), packs(values, b));
+                    each!(f, Binary: Add, Subtract, Multiply, Divide, Atan2, Min, Max, Power
+                        => F join(x, y, F))
+                }
+                Op::Choice(at, yes, no) => {
+                    let (mut at, yes, no) = (packs(values, at), packs(values, yes), packs(values, no));
+                    for p in 0..N {
+                        at[p] = at[p].where_positive(yes[p], no[p]);
+                    }
+                    at
+                }
+            };
+            values[(leaves + i) * N..][..N].copy_from_slice(&value);
+        }
+    }
+}
+
+/// The slope of a function of one number.
+#[inline(always)]
+fn slope_of<R: Real>(mut x: [R; N], f: Unary) -> [R; N] {
+    for x in &mut x {
+        *x = f.of(Dual::<R, 1>::along(*x, 0)).slope[0];
+    }
+    x
+}
+
+/// The slopes of a function of two numbers.
+#[inline(always)]
+fn slopes_of<R: Real>(mut x: [R; N], mut y: [R; N], f: Binary) -> [[R; N]; 2] {
+    for p in 0..N {
+        let dual = f.of(Dual::<R, 2>::along(x[p], 0), Dual::<R, 2>::along(y[p], 1));
+        [x[p], y[p]] = dual.slope;
+    }
+    [x, y]
+}
+
+per_lanes! {
+    /// Slopes handed from every operation to its operands.
+    fn backward[; R](ops: &[Op], leaves: usize, values: &[R], slopes: &mut [R]) {
+        let one = [R::constant(1.0); N];
+        for (i, op) in ops.iter().enumerate().rev() {
+            let own = (leaves + i) as u32;
+            let weight = packs(slopes, own);
+            slopes[own as usize * N..][..N].fill(R::constant(0.0));
+            match *op {
+                Op::One(Unary::Negative, a) => add(slopes, a, weight, [R::constant(-1.0); N]),
+                Op::One(Unary::Tanh, a) => {
+                    let mut slope = packs(values, own);
+                    for t in &mut slope {
+                        *t = -(*t * *t) + 1.0;
+                    }
+                    add(slopes, a, weight, slope);
+                }
+                Op::One(f, a) => {
+                    let x = packs(values, a);
+                    let slope = each!(f, Unary: Negative, Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh,
+                        Tanh, Exp, Ln, Sqrt, Abs, Signum => F slope_of(x, F));
+                    add(slopes, a, weight, slope);
+                }
+                Op::Two(Binary::Add, a, b) => {
+                    add(slopes, a, weight, one);
+                    add(slopes, b, weight, one);
+                }
+                Op::Two(Binary::Subtract, a, b) => {
+                    add(slopes, a, weight, one);
+                    add(slopes, b, weight, [R::constant(-1.0); N]);
+                }
+                Op::Two(Binary::Multiply, a, b) => {
+                    let (x, y) = (packs(values, a), packs(values, b));
+                    add(slopes, a, weight, y);
+                    add(slopes, b, weight, x);
+                }
+                Op::Two(f, a, b) => {
+                    let (x, y) = (packs(values, a), packs(values, b));
+                    let [along_a, along_b] = each!(f, Binary: Add, Subtract, Multiply, Divide, Atan2, Min,
+                        Max, Power => F slopes_of(x, y, F));
+                    add(slopes, a, weight, along_a);
+                    add(slopes, b, weight, along_b);
+                }
+                Op::Choice(at, yes, no) => {
+                    let (zero, mut left, mut right) = (R::constant(0.0), weight, weight);
+                    for (p, at) in packs(values, at).into_iter().enumerate() {
+                        left[p] = at.where_positive(weight[p], zero);
+                        right[p] = at.where_positive(zero, weight[p]);
+                    }
+                    add(slopes, yes, left, one);
+                    add(slopes, no, right, one);
+                }
+            }
+        }
+    }
+}
