@@ -35,7 +35,7 @@ pub use diagnosis::Diagnosis;
 pub use error::DiagnoseError;
 pub use findings::active_range::ActsWhere;
 pub use findings::cause::{
-    Alternative, Cause, ColumnFault, ExplainedBy, FoundShape, LawPart, MissingForce, Onset, Site,
+    Alternative, Cause, ColumnFault, ExplainedBy, FoundShape, LawPart, MissingForce, MostLike, Onset, Site,
     Unweighed, Value, Withdrawn, Wording,
 };
 pub use findings::closed_loop::ClosedLoop;

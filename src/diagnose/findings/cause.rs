@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::effect::Size;
 use crate::findings::active_range::ActsWhere;
 use crate::findings::per_record::InRecord;
-pub use crate::findings::value::{Onset, Value};
+pub use crate::findings::value::{MostLike, Onset, Value};
 
 /// Another explanation.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -197,6 +197,9 @@ pub struct Cause {
     pub parameters: Vec<Value>,
     /// The laws that it is a sum of, the largest first: one for a plain law.
     pub parts: Vec<LawPart>,
+    /// The one law that a sum is most like; `None` for a plain law, and where none is like it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub most_like: Option<MostLike>,
     /// Probability of as large a share without it, valid although it was chosen among many: from
     /// data that it was neither fitted to nor chosen on. `None` where no test was made.
     pub p_value: Option<f64>,

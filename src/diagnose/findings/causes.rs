@@ -96,6 +96,7 @@ impl Context<'_, '_> {
             runners_up,
             onset: None,
             acts_where,
+            most_like: self.most_like(model, &own),
             records,
             rows: None,
             wording: parts[0].wording.clone(),

@@ -1,4 +1,4 @@
-//! Which shape of the library a free curve looks like, a hint, no verdict; and which curve comes
+//! Which shape of the library a free curve, or a sum of laws, looks like, a hint, no verdict; and which curve comes
 //! nearest where none is a cause.
 
 use nalgebra::{DMatrix, DVector};
@@ -6,12 +6,12 @@ use nalgebra::{DMatrix, DVector};
 use crate::candidates::candidate::Candidate;
 use crate::candidates::free_curve::{self, Drawing, Sketch};
 use crate::effect::{Mechanism, Needs, Role, ShapeOf, View, curve};
-use crate::findings::cause::FoundShape;
+use crate::findings::cause::{FoundShape, MostLike};
 use crate::findings::context::Context;
 use crate::findings::note::Note;
 use crate::findings::series::Curve;
 use crate::fit::finished::Finished;
-use crate::fit::problem::Grain;
+use crate::fit::problem::{Grain, Model};
 use crate::register;
 
 /// Values of the coordinate at which curves are compared, in equal shares of its use.
@@ -25,8 +25,21 @@ impl Context<'_, '_> {
     /// What is known of a curve of unknown shape.
     pub fn found_curve(&self, cause: &Candidate, parameters: &[f64]) -> FoundShape {
         let most = parameters.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        let nearest = self.resembles(cause, parameters);
+        let law = |z: &[f64]| curve(cause.shape.as_ref(), parameters, z);
+        let nearest = self.resembles(cause, &law);
         FoundShape::Curve { most, nearest: nearest.map(|(name, share)| (name.into(), share)) }
+    }
+
+    /// The one law that the sum of several (`own`, of one place) is most like.
+    pub fn most_like(&self, model: &Model, own: &[usize]) -> Option<MostLike> {
+        let all = || own.iter().map(|&i| &model.added[i].cause);
+        let first = all().next().filter(|_| own.len() > 1)?;
+        if all().any(|cause| cause.is_learned()) {
+            return None;
+        }
+        let step = self.problem.step(Grain::Fine);
+        let (effect, share) = self.resembles(first, &|z| model.sum(own, step, z))?;
+        Some(MostLike { effect: effect.into(), share })
     }
 
     /// The curve that comes nearest to what is left, where none was good enough to be a cause,
@@ -53,13 +66,17 @@ impl Context<'_, '_> {
     }
 
     /// The shape of the library that makes up for most of a curve, and for how much of it.
-    fn resembles(&self, cause: &Candidate, parameters: &[f64]) -> Option<(&'static str, f64)> {
+    fn resembles(
+        &self,
+        cause: &Candidate,
+        law: &dyn Fn(&[f64]) -> Vec<f64>,
+    ) -> Option<(&'static str, f64)> {
         let base = &self.problem.base;
         let source = base.sources.find(cause.of.as_deref()?)?;
         let view = View::new(self.nominal.series(source), base.sampling_time);
         let at = |i: usize| view.quantile((i as f64 + 0.5) / POINTS as f64);
         let z: Vec<f64> = (0..POINTS).map(at).collect();
-        let wanted = DVector::from_vec(curve(cause.shape.as_ref(), parameters, &z));
+        let wanted = DVector::from_vec(law(&z));
         let total = wanted.norm_squared();
         let mut best: Option<(&'static str, f64, usize)> = None;
         for (card, shape) in register::effects() {

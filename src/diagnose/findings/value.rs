@@ -23,3 +23,12 @@ pub struct Onset {
     /// Standard error in s; `None` where the data do not say.
     pub std_error: Option<f64>,
 }
+
+/// The law of the library that a sum of several is most like as a curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MostLike {
+    /// Effect.
+    pub effect: String,
+    /// Share of the curve's mean square that it makes up for, over the coordinate as it is used.
+    pub share: f64,
+}

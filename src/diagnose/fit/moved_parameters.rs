@@ -78,6 +78,7 @@ impl Context<'_, '_> {
                 runners_up: vec![],
                 onset: None,
                 acts_where: None,
+                most_like: None,
                 records,
                 rows: None,
             });

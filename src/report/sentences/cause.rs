@@ -7,7 +7,7 @@
 use super::column;
 use super::size::{factor, found_shape, unresolved, wave};
 use super::stated::{HALF, amplitude, headline_value};
-use crate::diagnose::{ActsWhere, Cause, InRecord, LawPart, Site, Value, Wording};
+use crate::diagnose::{ActsWhere, Cause, InRecord, LawPart, MostLike, Site, Value, Wording};
 use crate::digits::{interval, number, percent, spaced, with_unit};
 use crate::effect::Size;
 
@@ -22,6 +22,9 @@ pub fn cause(cause: &Cause) -> String {
     } else if cause.wording.is_line_here {
         text += " Nearly all of this record lies on one side of its bend, where it is a straight line: \
                  a linear law and a constant would do.";
+    }
+    if let Some(MostLike { effect, share }) = &cause.most_like {
+        text += &format!(" As one curve it is most like `{effect}` ({} of it).", percent(*share));
     }
     if let Some(onset) = &cause.onset {
         let since = interval(onset.time, onset.std_error, "s");
