@@ -25,6 +25,8 @@ pub struct ReadBack {
     coordinates: Vec<(Coordinate, Reading)>,
 }
 
+/// Share from which on something is mostly a law of a coordinate.
+const MOSTLY: f64 = 0.5;
 /// Share of what is added that rounds to nothing.
 const NO_FORCE: f64 = 0.005;
 
@@ -75,6 +77,14 @@ impl ReadBack {
         }
         let Some((coordinate, reading)) = self.coordinates.first() else { return text + "." };
         let of = &coordinate.signal.name;
+        if reading.share < MOSTLY {
+            let share = percent(reading.share);
+            let _ = write!(
+                text,
+                " and is no law of one coordinate: `{of}` makes up for {share} of it."
+            );
+            return text;
+        }
         let _ = write!(text, " and depends on `{of}` ({})", percent(reading.share));
         let _ = match reading.named() {
             Some(law) => write!(

@@ -49,7 +49,7 @@ pub enum Leaf {
 /// let weights = vec![F64x8::constant(2.0); Reverse::TOGETHER];
 /// reverse.back(&values, &mut slopes, &weights);
 /// let slope = 2.0 * (0.5_f64.cos() * 0.5 + 0.5_f64.sin());
-/// assert!((slopes[0].lane(0) - slope).abs() < 1e-15);
+/// assert!((slopes[0].0[0] - slope).abs() < 1e-15);
 /// ```
 #[derive(Debug, Clone)]
 pub struct Reverse {
