@@ -50,8 +50,8 @@ impl Predictor {
     ) -> Result<Vec<Vec<f64>>, LikelihoodError> {
         let diverges = |sample: usize| LikelihoodError::Diverges { sample, time: sample as f64 };
         let (plan, horizon) = (&self.model.plan, horizon.max(1));
-        let knobs = plan.knob_values();
-        let given = (&self.model.theta[..], &knobs[..]);
+        let effect_values = plan.effect_values();
+        let given = (&self.model.theta[..], &effect_values[..]);
         let plant = Transition::new(&self.system, plan, &self.drive, given, false);
         let plant = plant.ok_or_else(|| diverges(0))?;
         let (jacobian, still) = (plant.jacobian(), vec![0.0; plant.forces()]);
