@@ -35,8 +35,8 @@ pub use diagnosis::Diagnosis;
 pub use error::DiagnoseError;
 pub use findings::active_range::ActsWhere;
 pub use findings::cause::{
-    Alternative, Cause, ColumnFault, ExplainedBy, FoundShape, LawPart, MissingForce, MostLike, Onset, Site,
-    Unweighed, Value, Withdrawn, Wording,
+    Alternative, Cause, ColumnFault, ExplainedBy, FoundShape, LawPart, MissingForce, MostLike,
+    Onset, Site, Unweighed, Value, Withdrawn, Wording,
 };
 pub use findings::closed_loop::ClosedLoop;
 pub use findings::distortion::{AtLines, Distortion, distortion};
