@@ -44,9 +44,9 @@ pub enum Leaf {
 /// assert_eq!(reverse.leaves(), [Leaf::Given(Given::State(0))]);
 /// let x = F64x8::constant(0.5);
 /// let [mut values, mut slopes] = reverse.room::<F64x8>();
-/// values[..Reverse::TOGETHER].fill(x);
+/// values[..Reverse::PACKS].fill(x);
 /// reverse.forward(&mut values);
-/// let weights = vec![F64x8::constant(2.0); Reverse::TOGETHER];
+/// let weights = vec![F64x8::constant(2.0); Reverse::PACKS];
 /// reverse.back(&values, &mut slopes, &weights);
 /// let slope = 2.0 * (0.5_f64.cos() * 0.5 + 0.5_f64.sin());
 /// assert!((slopes[0].0[0] - slope).abs() < 1e-15);
@@ -61,8 +61,8 @@ pub struct Reverse {
 
 impl Reverse {
     /// Packs of numbers that one sweep takes together: value `p` of number `i` stands at
-    /// `i * TOGETHER + p`.
-    pub const TOGETHER: usize = 4;
+    /// `i * PACKS + p`.
+    pub const PACKS: usize = 4;
 
     /// Sweeps over what some results are made of, a constant being `None`; `None` where a delay line
     /// is among it, which a single step does not know.
@@ -115,9 +115,9 @@ impl Reverse {
 
     /// Room for the values of all numbers and for their slopes, constants filled in.
     pub fn room<R: InRegisters>(&self) -> [Vec<R>; 2] {
-        let zeros = || vec![R::constant(0.0); self.count() * Self::TOGETHER];
+        let zeros = || vec![R::constant(0.0); self.count() * Self::PACKS];
         let mut values = zeros();
-        for (leaf, values) in self.leaves.iter().zip(values.chunks_exact_mut(Self::TOGETHER)) {
+        for (leaf, values) in self.leaves.iter().zip(values.chunks_exact_mut(Self::PACKS)) {
             if let Leaf::Constant(value) = leaf {
                 values.fill(R::constant(*value));
             }
@@ -132,23 +132,23 @@ impl Reverse {
 
     /// Packs of a result whose values are there; `None` where it is a constant.
     pub fn result<'r, R>(&self, values: &'r [R], number: usize) -> Option<&'r [R]> {
-        self.roots[number].map(|root| &values[root as usize * Self::TOGETHER..][..Self::TOGETHER])
+        self.roots[number].map(|root| &values[root as usize * Self::PACKS..][..Self::PACKS])
     }
 
     /// The slopes of the sum of all results, each times its weight (laid out as the values), along
     /// every leaf. Slopes have to be 0 before; those of the leaves have to be set to 0 by whoever has read
     /// them, all others are.
     pub fn back<R: InRegisters>(&self, values: &[R], slopes: &mut [R], weights: &[R]) {
-        for (root, weights) in self.roots.iter().zip(weights.chunks_exact(Self::TOGETHER)) {
+        for (root, weights) in self.roots.iter().zip(weights.chunks_exact(Self::PACKS)) {
             let Some(root) = root else { continue };
-            let to = slopes[*root as usize * Self::TOGETHER..].iter_mut();
+            let to = slopes[*root as usize * Self::PACKS..].iter_mut();
             to.zip(weights).for_each(|(to, &weight)| *to += weight);
         }
         backward(&self.ops, self.leaves.len(), values, slopes);
     }
 }
 
-const N: usize = Reverse::TOGETHER;
+const N: usize = Reverse::PACKS;
 
 /// A number's packs.
 #[inline(always)]

@@ -57,7 +57,7 @@ impl<R> Sweeps<R> {
     }
 }
 
-const TOGETHER: usize = Reverse::TOGETHER;
+const PACKS: usize = Reverse::PACKS;
 
 impl Adjoint {
     /// Records a law's derivative and its outputs; `None` where one of them cannot be recorded.
@@ -107,7 +107,7 @@ impl Adjoint {
     /// Room for the sweeps of one thread.
     pub fn room<R: InRegisters>(&self) -> Sweeps<R> {
         let [values, slopes] = self.reverse.room();
-        let weights = vec![R::constant(0.0); self.results * TOGETHER];
+        let weights = vec![R::constant(0.0); self.results * PACKS];
         Sweeps { values, slopes, weights }
     }
 
@@ -116,7 +116,7 @@ impl Adjoint {
     fn give<R: InRegisters>(&self, first: usize, packs: usize, at: &Point<'_, R>, to: &mut [R]) {
         let (n, zero) = (self.sizes, R::constant(0.0));
         for &(leaf, what) in &self.given {
-            for (p, value) in to[leaf * TOGETHER..][..TOGETHER].iter_mut().enumerate() {
+            for (p, value) in to[leaf * PACKS..][..PACKS].iter_mut().enumerate() {
                 let pack = (first + p).min(packs - 1);
                 *value = match what {
                     Given::Parameter(i) => R::constant(at.theta[i as usize]),
@@ -138,11 +138,11 @@ impl Adjoint {
         room: &mut Sweeps<R>,
         out: &mut [R],
     ) {
-        for first in (0..packs).step_by(TOGETHER) {
+        for first in (0..packs).step_by(PACKS) {
             self.give(first, packs, at, &mut room.values);
             self.reverse.forward(&mut room.values);
             for i in 0..self.results {
-                for p in 0..TOGETHER.min(packs - first) {
+                for p in 0..PACKS.min(packs - first) {
                     let value = self.reverse.result(&room.values, i).map(|result| result[p]);
                     out[(first + p) * self.results + i] =
                         value.unwrap_or_else(|| R::constant(self.constants[i]));
@@ -161,10 +161,10 @@ impl Adjoint {
         along: Along<'_, R>,
     ) {
         let (n, zero) = (self.sizes, R::constant(0.0));
-        for first in (0..packs).step_by(TOGETHER) {
+        for first in (0..packs).step_by(PACKS) {
             self.give(first, packs, at, &mut room.values);
             self.reverse.forward(&mut room.values);
-            for (i, weights) in room.weights.chunks_exact_mut(TOGETHER).enumerate() {
+            for (i, weights) in room.weights.chunks_exact_mut(PACKS).enumerate() {
                 for (p, weight) in weights.iter_mut().enumerate() {
                     // what stands for the rest weighs nothing
                     let own = first + p;
@@ -172,9 +172,9 @@ impl Adjoint {
                 }
             }
             self.reverse.back(&room.values, &mut room.slopes, &room.weights);
-            let together = TOGETHER.min(packs - first);
+            let count = PACKS.min(packs - first);
             for &(leaf, what) in &self.given {
-                for (p, &slope) in room.slopes[leaf * TOGETHER..][..together].iter().enumerate() {
+                for (p, &slope) in room.slopes[leaf * PACKS..][..count].iter().enumerate() {
                     let pack = first + p;
                     let to = match what {
                         Given::State(i) => &mut along.x[pack * n.x + i as usize],
@@ -191,7 +191,7 @@ impl Adjoint {
                     *to += slope;
                 }
             }
-            room.slopes[..self.reverse.leaves().len() * TOGETHER].fill(zero);
+            room.slopes[..self.reverse.leaves().len() * PACKS].fill(zero);
         }
     }
 }
