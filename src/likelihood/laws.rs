@@ -5,7 +5,8 @@
 //! path) is a column itself. What remembers (hysteresis, play, lag, delay) is left to a search.
 
 use crate::effect::{
-    CandidateEffect, EffectBlock, EffectCall, EffectCard, Mechanism, Needs, Role, SignRule, View,
+    CandidateEffect, EffectBlock, EffectCall, EffectCard, Mechanism, Needs, Role, Search, SignRule,
+    View,
 };
 use crate::real::{F64x8, Real};
 use crate::register;
@@ -97,15 +98,30 @@ fn points(
                 values[i] = if variant >> bit & 1 == 0 { parameter.max } else { parameter.min };
             }
             (0..values.len()).for_each(|i| values[i] = fixed(i).unwrap_or(values[i]));
-            let free = (0..values.len())
+            let free: Vec<usize> = (0..values.len())
                 .filter(|&i| fixed(i).is_none() && card.parameters[i].role != Role::Choice)
                 .filter(|&i| values[i].is_finite())
                 .collect();
             let effect = effect.boxed();
-            found.push(Law { name, effect, card: card.clone(), values, free });
+            let card = within(card, &search, &free);
+            found.push(Law { name, effect, card, values, free });
         }
     }
     found
+}
+
+/// A card whose free thresholds and widths stay where the coordinate tells them from none: beyond its
+/// range a law becomes another, plainer one, of sizes without a bound.
+fn within(card: &EffectCard, search: &Search, free: &[usize]) -> EffectCard {
+    let mut card = card.clone();
+    for &i in free {
+        let parameter = &mut card.parameters[i];
+        let (low, high) = (parameter.min.max(search.min[i]), parameter.max.min(search.max[i]));
+        if parameter.role != Role::Coefficient && low <= high {
+            (parameter.min, parameter.max) = (low, high);
+        }
+    }
+    card
 }
 
 impl Law {
@@ -204,5 +220,34 @@ impl Law {
                 up.iter().zip(&down).map(|(a, b)| (a - b) / (2.0 * h)).collect()
             })
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thresholds_and_widths_stay_in_the_range_of_their_coordinate() {
+        let z: Vec<f64> = (0..2000).map(|k| 3.0 * (0.01 * f64::from(k)).sin()).collect();
+        let all = laws(Spot::Channel { velocity: true }, &View::new(&z, 0.01));
+        assert!(all.iter().any(|law| law.name == "stribeck_friction"));
+        for law in &all {
+            for &i in law.free.iter().filter(|&&i| {
+                let parameter = &law.card.parameters[i];
+                parameter.role != Role::Coefficient && parameter.unit.text("N", "m/s") == "m/s"
+            }) {
+                let parameter = &law.card.parameters[i];
+                assert!(
+                    parameter.max <= 10.0,
+                    "{} of {}: {}",
+                    parameter.name,
+                    law.name,
+                    parameter.max
+                );
+                let inside = parameter.min <= law.values[i] && law.values[i] <= parameter.max;
+                assert!(inside, "{} of {}: {}", parameter.name, law.name, law.values[i]);
+            }
+        }
     }
 }
