@@ -6,7 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::candidates::candidate::Candidate;
 use crate::candidates::free_curve::{self, Drawing, Sketch};
 use crate::effect::{Mechanism, Needs, Role, ShapeOf, View, curve};
-use crate::findings::cause::{FoundShape, MostLike};
+use crate::findings::cause::{FoundShape, MostLike, Site};
 use crate::findings::context::Context;
 use crate::findings::note::Note;
 use crate::findings::series::Curve;
@@ -34,7 +34,8 @@ impl Context<'_, '_> {
     pub fn most_like(&self, model: &Model, own: &[usize]) -> Option<MostLike> {
         let all = || own.iter().map(|&i| &model.added[i].cause);
         let first = all().next().filter(|_| own.len() > 1)?;
-        if all().any(|cause| cause.is_learned()) {
+        // what remembers is no curve, and what was learned has a formula
+        if all().any(|cause| cause.is_learned() || cause.card.states > 0) {
             return None;
         }
         let step = self.problem.step(Grain::Fine);
@@ -78,10 +79,17 @@ impl Context<'_, '_> {
         let z: Vec<f64> = (0..POINTS).map(at).collect();
         let wanted = DVector::from_vec(law(&z));
         let total = wanted.norm_squared();
+        let site = cause.site();
         let mut best: Option<(&'static str, f64, usize)> = None;
         for (card, shape) in register::effects() {
             let own = shape.card();
-            let is_curve = own.mechanism == Mechanism::Law
+            let may_stand = match site {
+                Site::Channel => own.places.channel,
+                Site::Input => own.places.input,
+                _ => own.places.output,
+            };
+            let is_curve = may_stand
+                && own.mechanism == Mechanism::Law
                 && own.states == 0
                 && !matches!(own.needs, Needs::Time | Needs::Nothing)
                 && own.properties.shape == ShapeOf::Law;
