@@ -23,6 +23,7 @@ impl Effect for DeadZone {
             EffectParameter::coefficient("slope", self.slope, UnitRule::ChannelPerCoordinate(1)),
             EffectParameter::shape("width", self.width, UnitRule::Coordinate).neutral_at(0.0),
         ])
+        .needs(Needs::NoVelocity)
         .places(Places { channel: true, input: true, output: true, ..Places::default() })
         .piecewise_linear()
         .flat_inside("width");

@@ -18,6 +18,7 @@ impl Effect for Stop {
             EffectParameter::coefficient("slope", self.slope, UnitRule::ChannelPerCoordinate(1)),
             EffectParameter::shape("width", self.width, UnitRule::Coordinate),
         ])
+        .needs(Needs::NoVelocity)
         .rank(4)
     }
 

@@ -39,6 +39,8 @@ pub(crate) fn laws(spot: Spot, view: &View) -> Vec<Law> {
         let card = effect.card();
         let fits = match (spot, card.needs) {
             (_, Needs::Coordinate) => true,
+            (Spot::Channel { velocity }, Needs::NoVelocity) => !velocity,
+            (Spot::OwnPath { .. }, Needs::NoVelocity) => true,
             (Spot::Channel { velocity }, Needs::Velocity) => velocity && view.changes_sign(),
             (Spot::OwnPath { .. }, Needs::Velocity) => false,
             _ => false,

@@ -102,6 +102,9 @@ pub enum Needs {
     Coordinate,
     /// A velocity that changes sign along the record.
     Velocity,
+    /// Any coordinate that is no velocity: gaps and end stops are of places, levels, forces. Flat around
+    /// zero of a velocity is friction without its name.
+    NoVelocity,
     /// A coordinate whose rate of change is among the model's signals.
     CoordinateWithRate,
     /// A position (whose velocity is known), a velocity, or a force: what can shake an

@@ -257,6 +257,11 @@ impl Builder<'_, '_> {
         declared.or_else(|| base.rates.is_rate(source).then(crate::model::Quantity::velocity))
     }
 
+    /// Whether a source is a velocity, as declared or found.
+    pub(crate) fn is_velocity(&self, source: usize) -> bool {
+        self.quantity(source).is_some_and(|quantity| quantity.is_velocity())
+    }
+
     /// Root mean square of w along the baseline for a coefficient of 1.
     pub(crate) fn shape_size(
         &self,

@@ -168,16 +168,19 @@ impl Builder<'_, '_> {
                     }
                     (d, None)
                 }
+                Needs::NoVelocity => {
+                    if self.is_velocity(source) {
+                        continue;
+                    }
+                    (0.0, None)
+                }
                 Needs::CoordinateWithRate => {
                     let Some(rate) = base.rates.rate(source) else { continue };
                     let Some(d) = sign_of(rate.0).filter(|d| *d != 0.0) else { continue };
                     (d * rate.1, Some(rate))
                 }
                 Needs::Motion => {
-                    let is_velocity = match &signal.quantity {
-                        Some(quantity) => quantity.is_velocity(),
-                        None => base.rates.is_rate(source),
-                    };
+                    let is_velocity = self.is_velocity(source);
                     // a velocity whose position is offered too is the same motion
                     let position = sources.iter().any(|&other| {
                         base.rates.rate(other).is_some_and(|(r, _)| base.rates.same(r, source))
@@ -244,7 +247,10 @@ impl Builder<'_, '_> {
         let own = |t: usize| matches!(base.targets.entries[t].1, Origin::Own(_));
         let moves = base.rates.rate(source).is_some() || base.rates.is_rate(source);
         let stores = base.declared_channels && own(target) && !moves;
-        if !stores || card.needs != Needs::Coordinate || card.states > 0 {
+        if !stores
+            || !matches!(card.needs, Needs::Coordinate | Needs::NoVelocity)
+            || card.states > 0
+        {
             return;
         }
         let fills = |t: usize| self.nominal.push(self.problem, t, source).is_some_and(|d| d != 0.0);

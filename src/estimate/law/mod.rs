@@ -193,6 +193,7 @@ fn may_be(law: &dyn CandidateEffect, coordinate: &Signal, view: &View) -> bool {
         Needs::Velocity => {
             coordinate.quantity.as_ref().is_some_and(Quantity::is_velocity) && crosses
         }
+        Needs::NoVelocity => !coordinate.quantity.as_ref().is_some_and(Quantity::is_velocity),
         Needs::AngleOrTime => coordinate.unit == "rad",
         Needs::CoordinateWithRate | Needs::Motion | Needs::Time => false,
     };

@@ -35,12 +35,12 @@ impl Written {
     /// file cannot be read.
     pub fn mark(&self, folder: &Path, answers: &Path) -> Result<(ExamResult, usize), StudyError> {
         let mut given: BTreeMap<usize, _> = BTreeMap::new();
-        for (answer, folder) in Answers::read(answers)? {
+        for (answer, stored) in Answers::read(answers)? {
             if !(1..=self.cases).contains(&answer.case) {
                 let reason = format!("case {} is none of the {} cases", answer.case, self.cases);
                 return Err(StudyError::merge(answers, reason));
             }
-            given.insert(answer.case, (answer, folder));
+            given.insert(answer.case, (answer, stored));
         }
         let open = self.cases - given.len();
         let mut marks = vec![];
@@ -62,7 +62,7 @@ impl Written {
             };
             let answer = given.remove(&seal.case);
             let share = match &answer {
-                Some((Answer { extended_model: Some(model), .. }, folder)) => {
+                Some((Answer { extended_model: Some(model), .. }, stored)) => {
                     // answers may be a stranger's: nothing but what was handed in is opened
                     let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
                     if !Path::new(model).components().all(inside) {
@@ -73,7 +73,7 @@ impl Written {
                         );
                         return Err(StudyError::merge(answers, reason));
                     }
-                    let extended = load(&folder.join(model))?;
+                    let extended = load(&stored.join(model))?;
                     let baseline = load(&folder.join(CASES).join(&key).join("model.toml"))?;
                     let third = third(&truth_folder.join("third.csv"), &baseline)?;
                     Some(removed(&extended, &baseline, &third)?)
