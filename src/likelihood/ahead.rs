@@ -27,7 +27,7 @@ use crate::system::{System, Transition};
 impl Predictor {
     /// Predictions of a record `horizon` samples (at least 1) ahead, in the form of a simulation:
     /// between the innovations' own (1) and a free run (as many as the plant remembers). A discrete
-    /// model that has a gain ([`Law::innovation_gain`](crate::model::Law::innovation_gain): `K` of an
+    /// model that has a gain (`Law::innovation_gain`: `K` of an
     /// `lti`, or what was learned beside a baseline) predicts by it; the noise of any other is the one
     /// that the record itself makes most likely.
     ///
