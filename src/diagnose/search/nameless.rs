@@ -146,8 +146,10 @@ fn by_its_name(study: &mut Study<'_, '_>, base: &Fit, learned: &Fit) {
     let here = |c: &&Arc<Candidate>| {
         c.effect == effect && c.into == *into && c.of.as_deref() == of && c.also_into.is_empty()
     };
-    // its name may be told although the search was confined to laws without one
-    let only = Allowed { only: vec![effect.into()], ..Allowed::default() };
+    // its name may be told although the search was confined to laws without one, but where it was
+    // excluded
+    let without = study.allowed.without.clone();
+    let only = Allowed { only: vec![effect.into()], without, ..Allowed::default() };
     let all = library(study.problem, study.nominal, &base.model, vec![], &only);
     let wishes: Vec<Wish> = all
         .iter()
