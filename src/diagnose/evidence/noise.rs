@@ -95,13 +95,11 @@ impl Autoregressive {
         stretches.iter().map(one).sum::<f64>() * count / samples.max(1.0)
     }
 
-    /// Logarithm of the likelihood of a residual, but for a constant, at the variance that suits it
-    /// best; p ln(N) / 2 is paid for the coefficients.
-    pub fn log_likelihood(&self, r: &[f64], stretches: &[Range<usize>], count: f64) -> f64 {
-        let mut white = vec![0.0; r.len()];
-        self.whiten(r, stretches, &mut white);
+    /// Logarithm of the likelihood of a residual that [`Self::whiten`] made white, but for a constant,
+    /// at the variance that suits it best; p ln(N) / 2 is paid for the coefficients.
+    pub fn log_likelihood(&self, white: &[f64], stretches: &[Range<usize>], count: f64) -> f64 {
         let n = count.max(1.0);
-        let variance = (dot(&white, &white) / n).max(1e-300);
+        let variance = (dot(white, white) / n).max(1e-300);
         let spent = self.order() as f64 * n.ln();
         -0.5 * (n * variance.ln() + self.log_determinant(stretches, n) + spent)
     }

@@ -108,15 +108,18 @@ impl Stretches {
         self.filter(self.per_output(residual).map(one).collect())
     }
 
-    /// The disturbance of a residual by its own type, and by how much heavier tails make it more
-    /// probable.
+    /// The disturbance of a residual by its own type, and the logarithm of its likelihood, its own
+    /// numbers paid for.
     pub fn coloured(&self, residual: &[f64]) -> (Coloured, f64) {
         let mut found = self.normal(residual);
         let white = found.whiten(residual);
         let length = self.per_output.max(1);
         let both = white.chunks(length).zip(residual.chunks(length));
         let tails: Vec<_> = both.map(|(white, r)| Tails::of(white, r)).collect();
-        let gain = tails.iter().flatten().map(|(_, gain)| gain).sum();
+        let gain: f64 = tails.iter().flatten().map(|(_, gain)| gain).sum();
+        let parts = self.per_output(&white).zip(&found.noise);
+        let normal: f64 =
+            parts.map(|((w, count), noise)| noise.log_likelihood(w, &self.spans, count)).sum();
         found.tails = tails.into_iter().map(|tails| Some(tails?.0)).collect();
         if found.tails.iter().any(Option::is_some) {
             let of = |(white, tails): (&[f64], &Option<Tails>)| -> Vec<f64> {
@@ -125,17 +128,14 @@ impl Stretches {
             };
             found.weights = white.chunks(length).zip(&found.tails).flat_map(of).collect();
         }
-        (found, gain)
+        (found, normal + gain)
     }
 }
 
 impl NoiseModel for Stretches {
     fn estimate(&self, residual: &[f64]) -> Estimated {
-        let (found, gain) = self.coloured(residual);
-        let parts = self.per_output(residual).zip(&found.noise);
-        let normal: f64 =
-            parts.map(|((r, count), noise)| noise.log_likelihood(r, &self.spans, count)).sum();
-        Estimated { whitener: Arc::new(found), log_likelihood: normal + gain }
+        let (found, log_likelihood) = self.coloured(residual);
+        Estimated { whitener: Arc::new(found), log_likelihood }
     }
 
     fn white(&self, residual: &[f64]) -> Arc<dyn Whitener> {

@@ -1,5 +1,5 @@
-//! Which shape of the library a free curve, or a sum of laws, looks like, a hint, no verdict; and which curve comes
-//! nearest where none is a cause.
+//! Which shape of the library a free curve, or a sum of laws, looks like, a hint, no verdict; and which
+//! curve comes nearest where none is a cause.
 
 use nalgebra::{DMatrix, DVector};
 
