@@ -8,67 +8,93 @@
 
 use super::noise::{Component, Layout, Noise};
 use super::path::Path;
+use super::rows::{Quad, Rows, add, combine, dot};
+use super::transition::Augmented;
 
 /// The backward recursion.
 pub(crate) struct Back {
     na: usize,
-    /// Sum of what is still to come, and its variance.
-    pub r: Vec<f64>,
-    pub n: Vec<f64>,
-    /// Row of the output that is gone through.
-    pub c: Vec<f64>,
-    nk: Vec<f64>,
-    m: Vec<f64>,
-    room: Vec<f64>,
+    r: Vec<Quad>,
+    /// Variance of what is still to come.
+    pub n: Rows,
+    c: Vec<Quad>,
+    gain: Vec<Quad>,
+    nk: Vec<Quad>,
+    own: Vec<Quad>,
+    m: Rows,
+    transition: Augmented,
 }
 
 impl Back {
     pub fn new(layout: &Layout) -> Self {
         let na = layout.len();
-        let zeros = |count: usize| vec![0.0; count];
+        let zeros = || vec![[0.0; 4]; na.div_ceil(4)];
         Self {
             na,
-            r: zeros(na),
-            n: zeros(na * na),
-            c: zeros(na),
-            nk: zeros(na),
-            m: zeros(na * na),
-            room: zeros(na),
+            r: zeros(),
+            n: Rows::zeros(na, na),
+            c: zeros(),
+            gain: zeros(),
+            nk: zeros(),
+            own: zeros(),
+            m: Rows::zeros(na, na),
+            transition: Augmented::new(layout),
         }
     }
 
     pub fn restart(&mut self) {
-        self.r.fill(0.0);
+        self.r.fill([0.0; 4]);
         self.n.fill(0.0);
     }
 
-    /// One output, with the row `self.c`; its smoothing error and the variance of that.
-    pub fn update(&mut self, gain: &[f64], z: f64, s: f64) -> (f64, f64) {
-        let na = self.na;
-        for i in 0..na {
-            self.nk[i] = self.n[i * na..][..na].iter().zip(gain).map(|(n, k)| n * k).sum();
+    /// Sum of what is still to come.
+    #[inline(always)]
+    pub fn r(&self) -> &[f64] {
+        &self.r.as_flattened()[..self.na]
+    }
+
+    /// Row of the output that is gone through, to write.
+    #[inline(always)]
+    pub fn c_mut(&mut self) -> &mut [f64] {
+        &mut self.c.as_flattened_mut()[..self.na]
+    }
+
+    /// One output, with the row `c`; its smoothing error. `d` is the variance of that where N is
+    /// stationary, and N then stays.
+    #[inline(always)]
+    pub fn update(&mut self, gain: &[f64], z: f64, s: f64, d: Option<f64>) -> (f64, f64) {
+        self.gain.as_flattened_mut()[..self.na].copy_from_slice(gain);
+        let u = z / s.sqrt() - dot(&self.gain, &self.r);
+        add(&mut self.r, u, &self.c);
+        if let Some(d) = d {
+            return (u, d);
         }
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let u = z / s.sqrt() - dot(gain, &self.r);
-        let d = 1.0 / s + dot(gain, &self.nk);
-        for i in 0..na {
-            self.r[i] += self.c[i] * u;
-            for j in 0..na {
-                self.n[i * na + j] +=
-                    self.c[i] * d * self.c[j] - self.c[i] * self.nk[j] - self.nk[i] * self.c[j];
+        combine(&mut self.nk, gain, &self.n);
+        let d = 1.0 / s + dot(&self.gain, &self.nk);
+        // N += c (d c - N K)' - N K c'
+        let both = self.c.as_flattened().iter().zip(self.nk.as_flattened());
+        for (own, (c, nk)) in self.own.as_flattened_mut().iter_mut().zip(both) {
+            *own = d * c - nk;
+        }
+        for i in 0..self.na {
+            let (c, nk) = (self.c.as_flattened()[i], self.nk.as_flattened()[i]);
+            let row = self.n.row_mut(i);
+            if c != 0.0 {
+                add(row, c, &self.own);
             }
+            add(row, -nk, &self.c);
         }
         (u, d)
     }
 
     /// Half of (r r' - N) at one entry.
     pub fn entry(&self, i: usize) -> f64 {
-        0.5 * (self.r[i] * self.r[i] - self.n[i * self.na + i])
+        0.5 * (self.r()[i] * self.r()[i] - self.n.plain(i)[i])
     }
 
     /// The slope along the variance of a component that enters between samples `k` and `k + 1`.
     pub fn process(&mut self, path: &Path, k: usize, layout: &Layout, of: Component) -> f64 {
-        let (na, n, nf) = (self.na, path.n, path.forces);
+        let (n, nf) = (path.n, path.forces);
         match of {
             Component::Measurement(_) => 0.0,
             Component::White(c) => {
@@ -76,8 +102,8 @@ impl Back {
                 let (mut along, mut size) = (0.0, 0.0);
                 for i in 0..n {
                     let gi = g[i * nf + c];
-                    along += gi * self.r[i];
-                    let row = &self.n[i * na..][..n];
+                    along += gi * self.r()[i];
+                    let row = self.n.plain(i);
                     size += gi * (0..n).map(|j| row[j] * g[j * nf + c]).sum::<f64>();
                 }
                 0.5 * (along * along - size)
@@ -90,37 +116,35 @@ impl Back {
         }
     }
 
-    /// r <- F' r, N <- F' N F from sample `k + 1` to `k`.
-    pub fn predict(&mut self, path: &Path, k: usize, layout: &Layout, noise: &Noise) {
-        let (na, n, nf) = (self.na, path.n, path.forces);
-        let (a, g) = (path.a(k), path.g(k));
-        // columns of F: states, slow forces, wanders
-        let times = |v: &[f64], to: &mut [f64]| {
-            to.fill(0.0);
-            for (i, &v) in v[..n].iter().enumerate() {
-                to[..n].iter_mut().zip(&a[i * n..][..n]).for_each(|(to, a)| *to += v * a);
-                for (l, &c) in layout.slow.iter().enumerate() {
-                    to[n + l] += v * g[i * nf + c];
+    /// r <- F' r, N <- F' N F from sample `k + 1` to `k`; N stays where it is stationary.
+    #[inline(always)]
+    pub fn predict(
+        &mut self,
+        (path, k): (&Path, usize),
+        layout: &Layout,
+        noise: &Noise,
+        stationary: bool,
+    ) {
+        let na = self.na;
+        self.transition.of(path, k, layout, noise);
+        let f = &self.transition.f;
+        combine(&mut self.own, &self.r.as_flattened()[..na], f);
+        std::mem::swap(&mut self.r, &mut self.own);
+        if stationary {
+            return;
+        }
+        for i in 0..na {
+            combine(self.m.row_mut(i), &self.n.plain(i)[..na], f);
+        }
+        self.n.fill(0.0);
+        for i in 0..na {
+            for j in 0..na {
+                let factor = f.plain(i)[j];
+                if factor != 0.0 {
+                    add(self.n.row_mut(j), factor, self.m.row(i));
                 }
             }
-            for (i, part) in layout.parts(noise) {
-                to[i] += part.pole * v[i];
-            }
-        };
-        times(&self.r, &mut self.room);
-        self.r.copy_from_slice(&self.room);
-        for i in 0..na {
-            times(&self.n[i * na..][..na], &mut self.m[i * na..][..na]);
         }
-        // N F is in m, row by row; F' (N F) needs its columns
-        for j in 0..na {
-            for i in 0..na {
-                self.nk[i] = self.m[i * na + j];
-            }
-            times(&self.nk, &mut self.room);
-            for i in 0..na {
-                self.n[i * na + j] = self.room[i];
-            }
-        }
+        self.n.mirror(na);
     }
 }

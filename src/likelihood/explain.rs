@@ -17,7 +17,7 @@ use nalgebra::DMatrix;
 use super::error::LikelihoodError;
 use super::explanation::{Explanation, NamedCause};
 use super::hypothesis::{Hypothesis, Part, names};
-use super::noise::Layout;
+use super::noise::{Layout, Noise};
 use super::places::Survey;
 use super::predictor::{Predictor, starts};
 use super::ranked::{FittedLaws, MISSING};
@@ -43,7 +43,8 @@ struct Found {
 
 impl Predictor {
     /// What explains the records, at most `most` causes; `held` are samples that nothing is fitted to
-    /// until causes are chosen, and that may refute them. `stop` is asked between causes.
+    /// until causes are chosen, and that may refute them. `noise` is that of the model without causes,
+    /// where it is known. `stop` is asked between causes.
     ///
     /// # Errors
     ///
@@ -52,10 +53,14 @@ impl Predictor {
         &self,
         most: usize,
         held: &[Range<usize>],
+        noise: Option<&Noise>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Explanation, LikelihoodError> {
         let mut fit = self.blinded(held);
-        let first = fit.choose(&fit.model)?;
+        let first = match noise {
+            Some(noise) => fit.renewed(&fit.model, noise, 2)?,
+            None => fit.choose(&fit.model)?,
+        };
         fit.settle(&first.run.path, &first.noise);
         let first = fit.renewed(&fit.model, &first.noise, 2)?;
         let null = Hypothesis {

@@ -104,8 +104,8 @@ pub(crate) fn follow(
                 if !measured[at].is_finite() {
                     continue;
                 }
-                layout.row(path.c(k, o), o, &mut kalman.c);
-                let expected: f64 = kalman.c.iter().zip(&slow).map(|(c, x)| c * x).sum();
+                layout.row(path.c(k, o), o, kalman.c_mut());
+                let expected: f64 = kalman.c().iter().zip(&slow).map(|(c, x)| c * x).sum();
                 let own = e - expected;
                 let gate = wanted.gate.filter(|_| row[o] < IN_A_ROW);
                 if let Some(gate) = gate {
@@ -123,7 +123,7 @@ pub(crate) fn follow(
                 row[o] = 0;
                 path.e[at] = e;
                 let s = kalman.update(noise.measurement[o]);
-                slow.iter_mut().zip(&kalman.k).for_each(|(x, k)| *x += k * own);
+                slow.iter_mut().zip(kalman.k()).for_each(|(x, k)| *x += k * own);
                 found.densities[at] = -0.5 * ((std::f64::consts::TAU * s).ln() + own * own / s);
                 found.log_likelihood += found.densities[at];
             }
@@ -156,6 +156,7 @@ pub(crate) fn follow(
             }
         }
     }
+    path.mark_equal();
     found.path = path;
     Some(found)
 }
@@ -189,5 +190,6 @@ fn blank(
         theta: zeros(n * nt),
         c_theta: zeros(ny * nt),
         seen: zeros(sources),
+        as_before: vec![],
     }
 }

@@ -55,11 +55,21 @@ impl Objective for Score<'_> {
 
 /// The most likely variances of these components from a start; the noise and its log likelihood.
 pub(crate) fn most_likely(path: &Path, noise: &Noise, along: &[Component]) -> (Noise, f64) {
+    let stop = Stop { steps: 40, gradient: 0.02, decrease: 1e-7, patience: 2, loss: None };
+    until(stop, path, noise, along)
+}
+
+/// The same to a fraction of what one variance more has to be worth: for choosing among components.
+pub(crate) fn nearly_most_likely(path: &Path, noise: &Noise, along: &[Component]) -> (Noise, f64) {
+    let stop = Stop { steps: 40, gradient: 0.3, decrease: 1e-5, patience: 2, loss: None };
+    until(stop, path, noise, along)
+}
+
+fn until(stop: Stop, path: &Path, noise: &Noise, along: &[Component]) -> (Noise, f64) {
     let start: Vec<f64> =
         along.iter().map(|&c| noise.variance(c).max(f64::MIN_POSITIVE).ln()).collect();
     let pass = Pass::new(path, Layout::of(path.n, noise), false);
     let score = Score { path, noise, along, start: start.clone(), pass: RefCell::new(pass) };
-    let stop = Stop { steps: 40, gradient: 0.02, decrease: 1e-7, patience: 2, loss: None };
     let mut theta = start;
     // a start without a finite value is its own answer
     let _ = Lbfgs { memory: 10, first_step: 0.7, stop }.minimise(&score, &mut theta, &mut ());

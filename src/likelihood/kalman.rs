@@ -7,142 +7,128 @@
 //! Source: Kalman, J. Basic Eng. 82, 1960.
 
 use super::noise::{Layout, Noise};
+use super::rows::{Quad, Rows, add, combine, dot};
+use super::transition::Augmented;
 
 /// A covariance and the room that its recursion needs: nothing is allocated on the way.
 #[derive(Debug, Clone)]
 pub(crate) struct Kalman {
     na: usize,
-    /// The covariance, row by row.
-    pub p: Vec<f64>,
-    /// The gain of the last update.
-    pub k: Vec<f64>,
-    /// Row of the output that is taken in.
-    pub c: Vec<f64>,
-    v: Vec<f64>,
-    m: Vec<f64>,
-    poles: Vec<f64>,
+    /// The covariance.
+    pub p: Rows,
+    k: Vec<Quad>,
+    c: Vec<Quad>,
+    v: Vec<Quad>,
+    w: Vec<Quad>,
+    m: Rows,
+    transition: Augmented,
 }
 
 impl Kalman {
     pub fn new(layout: &Layout) -> Self {
         let na = layout.len();
-        let zeros = |count: usize| vec![0.0; count];
+        let zeros = || vec![[0.0; 4]; na.div_ceil(4)];
         Self {
             na,
-            p: zeros(na * na),
-            k: zeros(na),
-            c: zeros(na),
-            v: zeros(na),
-            m: zeros(na * na),
-            poles: zeros(na),
+            p: Rows::zeros(na, na),
+            k: zeros(),
+            c: zeros(),
+            v: zeros(),
+            w: zeros(),
+            m: Rows::zeros(na, na),
+            transition: Augmented::new(layout),
         }
+    }
+
+    /// The gain of the last update.
+    #[inline(always)]
+    pub fn k(&self) -> &[f64] {
+        &self.k.as_flattened()[..self.na]
+    }
+
+    /// Row of the output that is taken in.
+    #[inline(always)]
+    pub fn c(&self) -> &[f64] {
+        &self.c.as_flattened()[..self.na]
+    }
+
+    /// The same to write.
+    #[inline(always)]
+    pub fn c_mut(&mut self) -> &mut [f64] {
+        &mut self.c.as_flattened_mut()[..self.na]
     }
 
     /// The start of a segment: variances of the states; those of the slow parts belong to them.
     pub fn start(&mut self, p0: &[f64], layout: &Layout, noise: &Noise) {
-        let na = self.na;
         self.p.fill(0.0);
-        for i in 0..layout.n {
-            self.p[i * na + i] = p0[i];
+        for (i, &variance) in p0.iter().enumerate().take(layout.n) {
+            self.p.plain_mut(i)[i] = variance;
         }
         for (i, part) in layout.parts(noise) {
-            self.p[i * na + i] = part.variance * part.start();
-            self.poles[i] = part.pole;
+            self.p.plain_mut(i)[i] = part.variance * part.start();
         }
     }
 
-    /// Takes in one output with the row `self.c` and noise variance `r`; the variance of its
-    /// innovation.
+    /// Takes in one output with the row `c` and noise variance `r`; the variance of its innovation.
+    #[inline(always)]
     pub fn update(&mut self, r: f64) -> f64 {
         let s = self.gain(r);
-        let na = self.na;
-        let (p, k, v, c) = (&mut self.p, &self.k, &mut self.v, &self.c);
-        for i in 0..na {
-            for j in 0..na {
-                p[i * na + j] -= k[i] * v[j];
-            }
+        let root = s.sqrt();
+        for (w, v) in self.w.as_flattened_mut().iter_mut().zip(self.v.as_flattened()) {
+            *w = v / root;
         }
-        for i in 0..na {
-            v[i] = (0..na).map(|j| p[i * na + j] * c[j]).sum();
+        for i in 0..self.na {
+            let own = self.w.as_flattened()[i];
+            add(self.p.row_mut(i), -own, &self.w);
         }
-        for i in 0..na {
-            for j in i..na {
-                let both = 0.5 * (v[i] * k[j] + v[j] * k[i]);
-                let value = 0.5 * (p[i * na + j] + p[j * na + i]) - both + r * k[i] * k[j];
-                p[i * na + j] = value;
-                p[j * na + i] = value;
-            }
+        // w becomes r k - v / 2
+        combine(&mut self.v, &self.c.as_flattened()[..self.na], &self.p);
+        let both = self.v.as_flattened().iter().zip(self.k.as_flattened());
+        for (w, (v, k)) in self.w.as_flattened_mut().iter_mut().zip(both) {
+            *w = r * k - 0.5 * v;
+        }
+        for i in 0..self.na {
+            let (k, v) = (self.k.as_flattened()[i], self.v.as_flattened()[i]);
+            let row = self.p.row_mut(i);
+            add(row, k, &self.w);
+            add(row, -0.5 * v, &self.k);
         }
         s
     }
 
     /// The variance of an innovation and the gain, without taking it in.
+    #[inline(always)]
     pub fn gain(&mut self, r: f64) -> f64 {
-        let na = self.na;
-        let mut s = r;
-        for i in 0..na {
-            let v: f64 = (0..na).map(|j| self.p[i * na + j] * self.c[j]).sum();
-            self.v[i] = v;
-            s += v * self.c[i];
-        }
-        let s = s.max(f64::MIN_POSITIVE);
-        for (k, v) in self.k.iter_mut().zip(&self.v) {
+        combine(&mut self.v, &self.c.as_flattened()[..self.na], &self.p);
+        let s = (r + dot(&self.v, &self.c)).max(f64::MIN_POSITIVE);
+        for (k, v) in self.k.as_flattened_mut().iter_mut().zip(self.v.as_flattened()) {
             *k = v / s;
         }
         s
     }
 
     /// Goes on to the next sample: `a` states by states, `g` states by forces.
+    #[inline(always)]
     pub fn predict(&mut self, a: &[f64], g: &[f64], layout: &Layout, noise: &Noise) {
         let (na, n, nf) = (self.na, layout.n, noise.white.len());
-        let (p, m) = (&mut self.p, &mut self.m);
-        for i in 0..n {
-            let row = &mut m[i * na..][..na];
-            row.fill(0.0);
-            for l in 0..n {
-                let f = a[i * n + l];
-                if f != 0.0 {
-                    row.iter_mut().zip(&p[l * na..][..na]).for_each(|(m, p)| *m += f * p);
-                }
-            }
-            for (l, &c) in layout.slow.iter().enumerate() {
-                let f = g[i * nf + c];
-                row.iter_mut().zip(&p[(n + l) * na..][..na]).for_each(|(m, p)| *m += f * p);
-            }
+        self.transition.place(a, g, layout, noise);
+        self.transition.transpose(na);
+        for i in 0..na {
+            combine(self.m.row_mut(i), &self.transition.f.plain(i)[..na], &self.p);
         }
-        for i in n..na {
-            for j in 0..na {
-                m[i * na + j] = self.poles[i] * p[i * na + j];
-            }
+        for i in 0..na {
+            combine(self.p.row_mut(i), &self.m.plain(i)[..na], &self.transition.transposed);
         }
-        for i in 0..n {
-            let row = &m[i * na..][..na];
-            for j in i..n {
-                let mut sum: f64 = row[..n].iter().zip(&a[j * n..][..n]).map(|(m, a)| m * a).sum();
-                for (l, &c) in layout.slow.iter().enumerate() {
-                    sum += row[n + l] * g[j * nf + c];
-                }
-                for (c, &q) in noise.white.iter().enumerate() {
-                    if q > 0.0 {
-                        sum += g[i * nf + c] * q * g[j * nf + c];
-                    }
-                }
-                p[i * na + j] = sum;
-                p[j * na + i] = sum;
-            }
-            for j in n..na {
-                let value = row[j] * self.poles[j];
-                p[i * na + j] = value;
-                p[j * na + i] = value;
-            }
-        }
-        for i in n..na {
-            for j in n..na {
-                p[i * na + j] = m[i * na + j] * self.poles[j];
+        for (c, &q) in noise.white.iter().enumerate().filter(|(_, q)| **q > 0.0) {
+            for i in 0..n {
+                let own = q * g[i * nf + c];
+                let row = self.p.plain_mut(i);
+                (0..n).for_each(|j| row[j] += own * g[j * nf + c]);
             }
         }
         for (i, part) in layout.parts(noise) {
-            p[i * na + i] += part.variance;
+            self.p.plain_mut(i)[i] += part.variance;
         }
+        self.p.mirror(na);
     }
 }

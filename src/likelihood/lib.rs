@@ -41,6 +41,7 @@ mod places;
 mod predictor;
 mod ranked;
 mod replay;
+mod rows;
 mod scope;
 mod screen;
 mod select;
@@ -48,6 +49,7 @@ mod sets;
 mod share;
 mod std_error;
 mod tangent;
+mod transition;
 mod weigh;
 
 pub use error::LikelihoodError;

@@ -38,6 +38,8 @@ pub(crate) struct Path {
     pub c_theta: Vec<f64>,
     /// Table of sources at the filtered states, where asked for.
     pub seen: Vec<f64>,
+    /// Whether the linearisation at a sample is that of the sample before; empty: unknown.
+    pub as_before: Vec<bool>,
 }
 
 impl Path {
@@ -47,6 +49,26 @@ impl Path {
 
     pub fn g(&self, k: usize) -> &[f64] {
         &self.g[k * self.n * self.forces..][..self.n * self.forces]
+    }
+
+    /// Whether the linearisation at `k` is that at the sample before.
+    pub fn is_as_before(&self, k: usize) -> bool {
+        self.as_before.get(k).is_some_and(|same| *same)
+    }
+
+    /// Notes where the linearisation does not change, as that of a linear model never does.
+    pub fn mark_equal(&mut self) {
+        let equal = |of: &[f64], size: usize, k: usize| {
+            of[(k - 1) * size..][..size] == of[k * size..][..size]
+        };
+        let (n, nf, ny) = (self.n, self.forces, self.outputs);
+        let same = |k: usize| {
+            k > 0
+                && equal(&self.a, n * n, k)
+                && equal(&self.g, n * nf, k)
+                && equal(&self.c, ny * n, k)
+        };
+        self.as_before = (0..self.len).map(same).collect();
     }
 
     /// Row of output `o`.

@@ -34,6 +34,11 @@ pub(crate) struct Pass {
     next: Vec<f64>,
 }
 
+/// How often it is asked whether a covariance is stationary.
+const ASKED: usize = 16;
+/// Relative change from sample to sample up to which variances of innovations are stationary.
+const SETTLED: f64 = 1e-13;
+
 /// Smoothed augmented states and their variances, sample by sample.
 #[derive(Debug, Clone)]
 pub(crate) struct Smoothed {
@@ -67,47 +72,10 @@ impl Pass {
         pass
     }
 
-    /// Runs the filter; the log likelihood.
+    /// Runs the filter; the log likelihood. Where the linearisation does not change and nothing is
+    /// missing, the covariance is that of the algebraic Riccati equation and its gains stay.
     pub fn forward(&mut self, path: &Path, noise: &Noise) -> f64 {
-        let (na, n, ny) = (self.layout.len(), path.n, path.outputs);
-        let (kalman, x) = (&mut self.kalman, &mut self.x);
-        let mut sum = 0.0;
-        for segment in &path.segments {
-            kalman.start(&path.p0, &self.layout, noise);
-            x.fill(0.0);
-            for k in segment.clone() {
-                self.mean[k * na..][..na].copy_from_slice(x);
-                if self.kept {
-                    self.p[k * na * na..][..na * na].copy_from_slice(&kalman.p);
-                }
-                for o in 0..ny {
-                    let (at, measured) = (k * ny + o, path.e[k * ny + o]);
-                    if !measured.is_finite() {
-                        self.z[at] = f64::NAN;
-                        continue;
-                    }
-                    self.layout.row(path.c(k, o), o, &mut kalman.c);
-                    let expected: f64 = kalman.c.iter().zip(&*x).map(|(c, x)| c * x).sum();
-                    let e = measured - expected;
-                    let s = kalman.update(noise.measurement[o]);
-                    for i in 0..na {
-                        x[i] += kalman.k[i] * e;
-                    }
-                    self.s[at] = s;
-                    self.z[at] = e / s.sqrt();
-                    self.k[at * na..][..na].copy_from_slice(&kalman.k);
-                    sum -= 0.5 * ((std::f64::consts::TAU * s).ln() + e * e / s);
-                }
-                if k + 1 < segment.end {
-                    let (a, g) = (path.a(k), path.g(k));
-                    step(path, k, &self.layout, noise, x, &mut self.next);
-                    std::mem::swap(x, &mut self.next);
-                    kalman.predict(a, g, &self.layout, noise);
-                }
-            }
-        }
-        self.log_likelihood = if sum.is_finite() { sum } else { f64::NEG_INFINITY };
-        debug_assert!(n <= na);
+        forward(self, path, noise);
         self.log_likelihood
     }
 
@@ -115,85 +83,212 @@ impl Pass {
     /// with the same noise.
     pub fn gradient(&self, path: &Path, noise: &Noise, along: &[Component], to: &mut [f64]) {
         to.fill(0.0);
-        let mut back = Back::new(&self.layout);
-        for segment in path.segments.iter().rev() {
-            back.restart();
-            for k in segment.clone().rev() {
-                if k + 1 < segment.end {
-                    for (slope, component) in to.iter_mut().zip(along) {
-                        *slope += back.process(path, k, &self.layout, *component);
-                    }
-                    back.predict(path, k, &self.layout, noise);
+        backward(self, path, noise, &mut |at, back| match at {
+            At::Between(k) => {
+                for (slope, component) in to.iter_mut().zip(along) {
+                    *slope += back.process(path, k, &self.layout, *component);
                 }
-                self.outputs(path, k, &mut back, |o, score| {
-                    for (slope, component) in to.iter_mut().zip(along) {
-                        if *component == Component::Measurement(o) {
-                            *slope += score;
+            }
+            At::Output(o, score) => {
+                for (slope, component) in to.iter_mut().zip(along) {
+                    if *component == Component::Measurement(o) {
+                        *slope += score;
+                    }
+                }
+            }
+            At::Sample(_) => (),
+            At::Start => {
+                for (slope, component) in to.iter_mut().zip(along) {
+                    let (at, start) = match *component {
+                        Component::Slow(c) => {
+                            (self.layout.slow.iter().position(|&s| s == c), noise.slow[c])
                         }
-                    }
-                });
+                        Component::Wander(o) => {
+                            (self.layout.wander_of(o).map(|i| i - self.layout.n), noise.wander[o])
+                        }
+                        _ => continue,
+                    };
+                    let Some(at) = at else { continue };
+                    *slope += back.entry(self.layout.n + at) * start.start();
+                }
             }
-            for (slope, component) in to.iter_mut().zip(along) {
-                let (at, start) = match *component {
-                    Component::Slow(c) => {
-                        (self.layout.slow.iter().position(|&s| s == c), noise.slow[c])
-                    }
-                    Component::Wander(o) => {
-                        (self.layout.wander_of(o).map(|i| i - self.layout.n), noise.wander[o])
-                    }
-                    _ => continue,
-                };
-                let Some(at) = at else { continue };
-                *slope += back.entry(self.layout.n + at) * start.start();
-            }
-        }
+        });
     }
 
-    /// Backwards through the outputs of one sample; tells each its score along the variance of its
-    /// measurement noise.
-    fn outputs(&self, path: &Path, k: usize, back: &mut Back, mut score: impl FnMut(usize, f64)) {
-        let (na, ny) = (self.layout.len(), path.outputs);
-        for o in (0..ny).rev() {
-            let at = k * ny + o;
-            if !self.z[at].is_finite() {
-                continue;
-            }
-            self.layout.row(path.c(k, o), o, &mut back.c);
-            let (u, d) = back.update(&self.k[at * na..][..na], self.z[at], self.s[at]);
-            score(o, 0.5 * (u * u - d));
-        }
+    /// Whether the gains at a sample are those of the next, and nothing of both is missing.
+    #[inline(always)]
+    fn is_as_next(&self, path: &Path, k: usize) -> bool {
+        let ny = path.outputs;
+        let same = |at: usize| self.s[at] == self.s[at + ny] && self.z[at].is_finite();
+        path.is_as_before(k + 1)
+            && (k * ny..(k + 1) * ny).all(|at| same(at) && self.z[at + ny].is_finite())
     }
 
     /// Smoothed states and variances, after a forward pass that kept its covariances.
     pub fn smoothed(&self, path: &Path, noise: &Noise) -> Smoothed {
         let na = self.layout.len();
-        let mut back = Back::new(&self.layout);
         let mut to = Smoothed { mean: self.mean.clone(), variance: vec![0.0; path.len * na] };
         let mut row = vec![0.0; na];
-        for segment in path.segments.iter().rev() {
-            back.restart();
-            for k in segment.clone().rev() {
-                if k + 1 < segment.end {
-                    back.predict(path, k, &self.layout, noise);
+        backward(self, path, noise, &mut |at, back| {
+            let At::Sample(k) = at else { return };
+            let p = &self.p[k * na * na..][..na * na];
+            for i in 0..na {
+                let own = &p[i * na..][..na];
+                to.mean[k * na + i] += own.iter().zip(back.r()).map(|(p, r)| p * r).sum::<f64>();
+                for (j, row) in row.iter_mut().enumerate() {
+                    *row = own.iter().zip(back.n.plain(j)).map(|(p, n)| p * n).sum();
                 }
-                self.outputs(path, k, &mut back, |_, _| ());
-                let p = &self.p[k * na * na..][..na * na];
-                for i in 0..na {
-                    let own = &p[i * na..][..na];
-                    to.mean[k * na + i] += own.iter().zip(&back.r).map(|(p, r)| p * r).sum::<f64>();
-                    for (j, row) in row.iter_mut().enumerate() {
-                        *row = own.iter().zip(&back.n[j * na..]).map(|(p, n)| p * n).sum();
-                    }
-                    let gone: f64 = row.iter().zip(own).map(|(n, p)| n * p).sum();
-                    to.variance[k * na + i] = (own[i] - gone).max(0.0);
-                }
+                let gone: f64 = row.iter().zip(own).map(|(n, p)| n * p).sum();
+                to.variance[k * na + i] = (own[i] - gone).max(0.0);
             }
-        }
+        });
         to
     }
 }
 
+lacuna_core::per_isa! {
+    fn forward [] (pass: &mut Pass, path: &Path, noise: &Noise) {
+        let (na, n, ny) = (pass.layout.len(), path.n, path.outputs);
+        let (kalman, x) = (&mut pass.kalman, &mut pass.x);
+        let mut sum = 0.0;
+        let mut largest = vec![0.0; ny * na];
+        for segment in &path.segments {
+            kalman.start(&path.p0, &pass.layout, noise);
+            x.fill(0.0);
+            let mut stationary = false;
+            for k in segment.clone() {
+                let since = k - segment.start;
+                let whole = path.e[k * ny..][..ny].iter().all(|e| e.is_finite());
+                let same = whole && path.is_as_before(k);
+                stationary = same && (stationary || (since % ASKED == 0
+                    && since > 0
+                    && !pass.kept
+                    && is_settled(&pass.s, &pass.k, (k, ny, na), &mut largest)));
+                pass.mean[k * na..][..na].copy_from_slice(x);
+                if pass.kept {
+                    for i in 0..na {
+                        let row = &kalman.p.plain(i)[..na];
+                        pass.p[(k * na + i) * na..][..na].copy_from_slice(row);
+                    }
+                }
+                for o in 0..ny {
+                    let (at, measured) = (k * ny + o, path.e[k * ny + o]);
+                    if !measured.is_finite() {
+                        (pass.z[at], pass.s[at]) = (f64::NAN, f64::NAN);
+                        continue;
+                    }
+                    pass.layout.row(path.c(k, o), o, kalman.c_mut());
+                    let expected: f64 = kalman.c().iter().zip(&*x).map(|(c, x)| c * x).sum();
+                    let e = measured - expected;
+                    if stationary {
+                        pass.k.copy_within((at - ny) * na..(at - ny + 1) * na, at * na);
+                        pass.s[at] = pass.s[at - ny];
+                    } else {
+                        pass.s[at] = kalman.update(noise.measurement[o]);
+                        pass.k[at * na..][..na].copy_from_slice(kalman.k());
+                    }
+                    let s = pass.s[at];
+                    for (x, k) in x.iter_mut().zip(&pass.k[at * na..][..na]) {
+                        *x += k * e;
+                    }
+                    pass.z[at] = e / s.sqrt();
+                    sum -= 0.5 * ((std::f64::consts::TAU * s).ln() + e * e / s);
+                }
+                if k + 1 < segment.end {
+                    let (a, g) = (path.a(k), path.g(k));
+                    step(path, k, &pass.layout, noise, x, &mut pass.next);
+                    std::mem::swap(x, &mut pass.next);
+                    if !stationary {
+                        kalman.predict(a, g, &pass.layout, noise);
+                    }
+                }
+            }
+        }
+        pass.log_likelihood = if sum.is_finite() { sum } else { f64::NEG_INFINITY };
+        debug_assert!(n <= na);
+    }
+}
+
+/// Whether variances of innovations and gains at the two samples before `k` are the same but for
+/// rounding; gains are compared with the `largest` that were seen, since the gain of what nothing
+/// disturbs goes to 0 for ever.
+#[inline(always)]
+fn is_settled(
+    s: &[f64],
+    gains: &[f64],
+    (k, ny, na): (usize, usize, usize),
+    largest: &mut [f64],
+) -> bool {
+    let (last, before) = ((k - 1) * ny, (k - 2) * ny);
+    let mut settled = (0..ny).all(|o| (s[last + o] - s[before + o]).abs() <= SETTLED * s[last + o]);
+    for (i, largest) in largest.iter_mut().enumerate() {
+        let (now, then) = (gains[last * na + i], gains[before * na + i]);
+        *largest = f64::max(*largest, now.abs());
+        settled &= (now - then).abs() <= 1e2 * SETTLED * *largest;
+    }
+    settled
+}
+
+/// Where the backward recursion stands.
+enum At {
+    /// Between a sample and the next, before the transition is undone.
+    Between(usize),
+    /// Before an output is gone through, with its score along the variance of its noise.
+    Output(usize, f64),
+    /// Before a sample, all its outputs gone through.
+    Sample(usize),
+    /// At the start of a segment.
+    Start,
+}
+
+lacuna_core::per_isa! {
+    /// The backward recursion, which says at each of its steps where it stands.
+    fn backward [] (
+        pass: &Pass,
+        path: &Path,
+        noise: &Noise,
+        see: &mut dyn FnMut(At, &mut Back),
+    ) {
+        let (na, ny) = (pass.layout.len(), path.outputs);
+        let mut back = Back::new(&pass.layout);
+        let mut before = back.n.clone();
+        let mut sizes = vec![0.0; ny];
+        for segment in path.segments.iter().rev() {
+            back.restart();
+            let mut stationary = false;
+            for k in segment.clone().rev() {
+                let since = segment.end - 1 - k;
+                let same = since > 0 && pass.is_as_next(path, k);
+                stationary = same && (stationary || (since % ASKED == 0
+                    && back.n.is_settled(&before, na)));
+                if k + 1 < segment.end {
+                    if since % ASKED == ASKED - 1 {
+                        before.clone_from(&back.n);
+                    }
+                    see(At::Between(k), &mut back);
+                    back.predict((path, k), &pass.layout, noise, stationary);
+                }
+                for o in (0..ny).rev() {
+                    let at = k * ny + o;
+                    if !pass.z[at].is_finite() {
+                        continue;
+                    }
+                    pass.layout.row(path.c(k, o), o, back.c_mut());
+                    let d = stationary.then_some(sizes[o]);
+                    let gain = &pass.k[at * na..][..na];
+                    let (u, d) = back.update(gain, pass.z[at], pass.s[at], d);
+                    sizes[o] = d;
+                    see(At::Output(o, 0.5 * (u * u - d)), &mut back);
+                }
+                see(At::Sample(k), &mut back);
+            }
+            see(At::Start, &mut back);
+        }
+    }
+}
+
 /// The augmented state at the next sample.
+#[inline(always)]
 fn step(path: &Path, k: usize, layout: &Layout, noise: &Noise, x: &[f64], to: &mut [f64]) {
     let (n, nf) = (path.n, path.forces);
     let (a, g) = (path.a(k), path.g(k));

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::error::LikelihoodError;
 use super::follow::{Followed, Wanted};
-use super::intensities::{concentrated, most_likely};
+use super::intensities::{concentrated, most_likely, nearly_most_likely};
 use super::noise::{Component, Noise, Slow};
 use super::parametrised::Model;
 use super::path::Path;
@@ -24,6 +24,8 @@ const LEFT: [f64; 2] = [1.0, 1e-2];
 const FITTED: usize = 3;
 /// Components at most: each is named in the result, and a record tells no more apart.
 const MOST: usize = 6;
+/// Poles that are fitted, of all that are looked at.
+const FITTED_POLES: usize = 2;
 /// Poles that a slow component may have beside 1.
 const POLES: [f64; 6] = [0.3, 0.6, 0.8, 0.9, 0.97, 0.99];
 /// Renewals of the linearisation at most, and the change of log L at which it is settled.
@@ -130,7 +132,7 @@ impl Predictor {
     fn selected(&self, path: &Path) -> Noise {
         let penalty = 0.5 * self.observed().ln();
         let start = self.white(self.spread.iter().map(|s| s * s + tiny()).collect());
-        let (mut noise, mut value) = most_likely(path, &start, &start.components());
+        let (mut noise, mut value) = nearly_most_likely(path, &start, &start.components());
         let scales = path.force_scales();
         for _ in 0..MOST {
             let Some((next, better)) = self.added(path, &noise, &scales) else { break };
@@ -168,7 +170,7 @@ impl Predictor {
         looked.truncate(FITTED);
         let fitted: Vec<_> = looked
             .into_par_iter()
-            .map(|(noise, _)| most_likely(path, &noise, &noise.components()))
+            .map(|(noise, _)| nearly_most_likely(path, &noise, &noise.components()))
             .collect();
         fitted.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
     }
@@ -223,16 +225,19 @@ impl Predictor {
         let slow = |c: &Component| matches!(c, Component::Slow(_) | Component::Wander(_));
         for component in noise.components().into_iter().filter(slow) {
             let now = pole(&noise, component);
-            let tried: Vec<_> = POLES
-                .par_iter()
-                .chain([1.0].par_iter())
-                .filter(|&&other| other != now)
-                .map(|&other| {
-                    let mut noise = noise.clone();
-                    let variance = noise.variance(component);
-                    place(&mut noise, component, variance, other);
-                    most_likely(path, &noise, &noise.components())
-                })
+            let other = |&pole: &f64| {
+                let mut noise = noise.clone();
+                let variance = noise.variance(component);
+                place(&mut noise, component, variance, pole);
+                concentrated(path, &noise)
+            };
+            let poles = POLES.par_iter().chain([1.0].par_iter()).filter(|&&other| other != now);
+            let mut likely: Vec<_> = poles.map(other).collect();
+            likely.sort_by(|a, b| b.1.total_cmp(&a.1));
+            likely.truncate(FITTED_POLES);
+            let tried: Vec<_> = likely
+                .into_par_iter()
+                .map(|(noise, _)| nearly_most_likely(path, &noise, &noise.components()))
                 .collect();
             let merit = |noise: &Noise, value: f64| value - penalty * noise.count() as f64;
             let best =

@@ -178,6 +178,8 @@ pub struct Wording {
     pub units: (String, String),
     /// Whether nearly all of the record lies on one side of its bends.
     pub is_line_here: bool,
+    /// Whether a sensor with it reads the absolute value of what it measures.
+    pub rectifies: bool,
 }
 
 /// A named cause.

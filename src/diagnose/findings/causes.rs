@@ -80,6 +80,7 @@ impl Context<'_, '_> {
         let records =
             bare.filter(|_| by.several).and_then(|bare| self.per_record(&bare, &chosen.y));
         let acts_where = self.acts_where(model, &own);
+        parts[0].wording.rectifies = self.rectifies(model, &own);
         parts[0].wording.is_line_here = acts_where.is_none() && self.is_straight(model, &own);
         Ok(Cause {
             effect: cause.effect.into(),

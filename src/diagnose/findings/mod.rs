@@ -18,6 +18,7 @@ pub(crate) mod note;
 mod numbers;
 pub(crate) mod per_record;
 pub(crate) mod pictures;
+mod rectified;
 pub(crate) mod remarks;
 pub(crate) mod report;
 pub(crate) mod series;

@@ -1,6 +1,7 @@
 //! What has to be added at each channel for the model that was handed in to follow its records.
 
 use super::compete::predictor;
+use super::reconsidered::is_white;
 use crate::candidates::library::Allowed;
 use crate::findings::cause::{ExplainedBy, MissingForce};
 use crate::findings::hand_over::Searched;
@@ -13,7 +14,10 @@ const REPORTED: usize = 4;
 
 /// What a search says, with the missing force and what disturbs the plant.
 pub(crate) fn completed(prepared: &Prepared<'_>, chosen: &Finished, of: Searched) -> Searched {
-    let mut of = Searched { missing: missing(prepared), ..of };
+    // what leaves white noise lacks no force
+    let lacks = chosen.causes() > 0 || !is_white(prepared, chosen);
+    let missing = if lacks { missing(prepared) } else { vec![] };
+    let mut of = Searched { missing, ..of };
     if let Some(disturbances) = chosen.inside.clone().filter(|all| !all.is_empty()) {
         of.notes.push(Note::Inside { disturbances });
     }

@@ -135,7 +135,7 @@ fn reconsidered(
 }
 
 /// Whether a free run of the answer leaves white noise of every output.
-fn is_white(prepared: &Prepared<'_>, answer: &Finished) -> bool {
+pub(super) fn is_white(prepared: &Prepared<'_>, answer: &Finished) -> bool {
     let problem = &prepared.problem;
     (0..problem.y.len()).all(|o| {
         let off: Vec<f64> = problem.y[o].iter().zip(&answer.y[o]).map(|(a, b)| a - b).collect();
@@ -159,9 +159,14 @@ fn by_innovations(
     }
     watch.report(0.92, "searching by innovations");
     let held: Vec<_> = problem.choose.clone();
-    let found = base.explain(most, &held, &|| watch.stopped()).ok()?;
+    let is_bare = answer.causes() + count_moved(answer) == 0;
+    let noise = rivals.inside.as_ref().filter(|_| is_bare).and_then(|fitted| match &fitted.noise {
+        NoiseModel::Predictor(noise) => Some(noise),
+        NoiseModel::FreeRunAutoregressive(_) => None,
+    });
+    let found = base.explain(most, &held, noise, &|| watch.stopped()).ok()?;
     let of_answer = rivals.best() - taken(&base, answer);
-    let none = found.causes.is_empty() && answer.causes() + count_moved(answer) == 0;
+    let none = found.causes.is_empty() && is_bare;
     if !none && found.criterion() <= of_answer {
         return None;
     }

@@ -9,4 +9,5 @@ mod missing;
 mod places;
 mod plants;
 mod smoother;
+mod stationary;
 mod tangent;

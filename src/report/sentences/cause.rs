@@ -17,7 +17,9 @@ pub fn cause(cause: &Cause) -> String {
         Some(fault) => column::sentence(cause, *fault),
         None => format!("{}{}{}.", body(cause), sure(cause), needed(cause)),
     };
-    if let Some(acts) = &cause.acts_where {
+    if cause.wording.rectifies {
+        text += &format!(" So {} is read as its absolute value (a rectifier).", cause.into);
+    } else if let Some(acts) = &cause.acts_where {
         text += &format!(" It acts {}.", acts_where(acts));
     } else if cause.wording.is_line_here {
         text += " Nearly all of this record lies on one side of its bend, where it is a straight line: \
