@@ -4,6 +4,7 @@
 //! repeat  the most probable place and its laws, given the causes before (`places.rs`)
 //!         all causes fitted together, the noise anew
 //! until nothing more is probable
+//! a law that is a parameter in disguise becomes the parameter (`exchange.rs`); then more causes
 //! causes that are not needed beside the others are left out
 //! causes that held samples speak against are withdrawn; the rest fitted to all samples
 //! ```
@@ -16,30 +17,18 @@ use nalgebra::DMatrix;
 
 use super::error::LikelihoodError;
 use super::explanation::{Explanation, NamedCause};
-use super::hypothesis::{Hypothesis, Part, names};
+use super::found::{Found, dealt, joined};
+use super::hypothesis::{Hypothesis, names};
 use super::noise::{Layout, Noise};
 use super::places::Survey;
 use super::predictor::{Predictor, starts};
-use super::ranked::{FittedLaws, MISSING};
+use super::ranked::MISSING;
 use super::replay::Pass;
 use super::tangent::Site;
 use super::weigh::{Weighed, plainest};
 
 /// Log density by which held samples must speak for a cause.
 const REFUTED: f64 = 0.0;
-
-/// A cause under way; its parts stand in the hypothesis in the order of causes.
-#[derive(Debug, Clone)]
-struct Found {
-    place: (Site, Option<usize>),
-    parts: Vec<Part>,
-    choice: f64,
-    log_odds: f64,
-    law: f64,
-    at_place: f64,
-    others: Vec<FittedLaws>,
-    chosen_again: bool,
-}
 
 impl Predictor {
     /// What explains the records, at most `most` causes; `held` are samples that nothing is fitted to
@@ -70,7 +59,11 @@ impl Predictor {
             log_likelihood: first.log_likelihood,
         };
         let mut nothing = 1.0;
-        let (mut found, mut now) = fit.one_by_one(&null, most, stop, &mut nothing)?;
+        let (mut found, mut now) =
+            fit.one_by_one((vec![], null.clone()), most, stop, &mut nothing)?;
+        if !stop() && fit.exchanged(&mut found, &mut now) {
+            (found, now) = fit.one_by_one((found, now), most, stop, &mut nothing)?;
+        }
         fit.pruned_causes(&mut found, &mut now, &null);
         let all = Self { start: fit.start.clone(), ..self.clone() };
         let mut withdrawn = vec![];
@@ -81,21 +74,29 @@ impl Predictor {
         all.finished((found, withdrawn), now, nothing)
     }
 
-    /// Causes one after the other.
+    /// Causes one after the other, beside those that are known.
     fn one_by_one(
         &self,
-        null: &Hypothesis,
+        (mut found, mut now): (Vec<Found>, Hypothesis),
         most: usize,
         stop: &dyn Fn() -> bool,
         nothing: &mut f64,
     ) -> Result<(Vec<Found>, Hypothesis), LikelihoodError> {
-        let (mut found, mut now): (Vec<Found>, Hypothesis) = (vec![], null.clone());
         while found.len() < most && !stop() {
             let survey = self.holding(&now)?.survey(&now.noise, None)?;
             if found.is_empty() {
                 *nothing = 1.0 - survey.sets.iter().map(|set| set.probability).sum::<f64>();
             }
-            let Some(best) = plainest(&survey.sets).filter(|set| set.log_odds > MISSING) else {
+            // a place is chosen twice at most
+            let settled = |set: &&Weighed| {
+                let at = |cause: &&Found| cause.place == set.place;
+                let is_settled = |cause: &Found| {
+                    cause.chosen_again || matches!(cause.place.0, Site::Parameter(_))
+                };
+                found.iter().find(at).is_some_and(is_settled)
+            };
+            let open: Vec<Weighed> = survey.sets.iter().filter(|s| !settled(s)).cloned().collect();
+            let Some(best) = plainest(&open).filter(|set| set.log_odds > MISSING) else {
                 break;
             };
             let known = found.iter().position(|cause| cause.place == best.place);
@@ -104,9 +105,6 @@ impl Predictor {
                 Some(at) => {
                     let mut kept = found.clone();
                     let old = kept.remove(at);
-                    if old.chosen_again || matches!(old.place.0, Site::Parameter(_)) {
-                        break;
-                    }
                     let parts = joined(&kept);
                     let rest = Hypothesis { parts, ..now.clone() };
                     let again = self.holding(&rest)?.survey(&now.noise, Some(old.place))?;
@@ -119,12 +117,17 @@ impl Predictor {
             let start = best.hypothesis.clone();
             kept.push(cause);
             let fitted = self.fit(joined(&kept), &start.theta, &start.noise);
-            let Some(joint) = fitted.and_then(|h| self.refit(h)) else { break };
-            if !(self.merit(&joint, &kept) > self.merit(&now, &found)) {
-                break;
+            let joint = fitted.and_then(|h| self.refit(h));
+            let better = |h: &Hypothesis| self.merit(h, &kept) > self.merit(&now, &found);
+            match (joint.filter(better), known) {
+                (Some(joint), _) => {
+                    dealt(&mut kept, &joint);
+                    (found, now) = (kept, joint);
+                }
+                // it stays as it was; another place may still lack something
+                (None, Some(at)) => found[at].chosen_again = true,
+                (None, None) => break,
             }
-            dealt(&mut kept, &joint);
-            (found, now) = (kept, joint);
         }
         Ok((found, now))
     }
@@ -157,7 +160,7 @@ impl Predictor {
     }
 
     /// Criterion of a hypothesis, less what its causes were chosen from.
-    fn merit(&self, of: &Hypothesis, found: &[Found]) -> f64 {
+    pub(crate) fn merit(&self, of: &Hypothesis, found: &[Found]) -> f64 {
         let choice: f64 = found.iter().map(|cause| cause.choice).sum();
         of.criterion(self.observed()) - choice
     }
@@ -284,19 +287,5 @@ impl Predictor {
             place_probability: cause.at_place,
             others: cause.others,
         }
-    }
-}
-
-/// All parts of causes, in their order.
-fn joined(found: &[Found]) -> Vec<Part> {
-    found.iter().flat_map(|cause| cause.parts.iter().cloned()).collect()
-}
-
-/// Deals the fitted parts out to their causes.
-fn dealt(found: &mut [Found], of: &Hypothesis) {
-    let mut parts = of.parts.iter().cloned();
-    for cause in found {
-        let count = cause.parts.len();
-        cause.parts = parts.by_ref().take(count).collect();
     }
 }

@@ -96,7 +96,10 @@ impl Predictor {
             None => all,
             // the offset of its site is part of a place
             Some((site, of)) => {
-                let own = |s: &Spotted| s.site == site && (s.source == of || s.source.is_none());
+                let own = |s: &Spotted| {
+                    s.site == site && s.source == of
+                        || s.source.is_none() && s.site.pushes_as(site, &path)
+                };
                 all.into_iter().filter(own).collect()
             }
         };
@@ -208,7 +211,8 @@ impl Predictor {
         let starts: Vec<Vec<Part>> = match spot.site {
             Site::Parameter(p) => vec![vec![Part::Parameter(p)]],
             _ => {
-                let offset = spots.iter().find(|s| s.site == spot.site && s.source.is_none());
+                let offset =
+                    spots.iter().find(|s| s.source.is_none() && s.site.pushes_as(spot.site, path));
                 sets(path, &place.noise, spot, offset)
             }
         };

@@ -51,11 +51,8 @@ impl Context<'_, '_> {
         let drives: Vec<&[f64]> = self.joined.drive.inputs.iter().map(Vec::as_slice).collect();
         let off_before = self.off(&y_before);
         let floors = test.floors(system, &before, &off_before, &drives);
-        // stretches of one record are no records; and of a model with noise inside the plant a free run
-        // follows the noise, so that what it leaves of a record says nothing of a cause
-        let several = self.joined.spans.len() > 1
-            && !matches!(test.counted, Counted::All)
-            && !chosen.is_by_innovations();
+        // stretches of one record are no records
+        let several = self.joined.spans.len() > 1 && !matches!(test.counted, Counted::All);
         let by = By {
             test,
             before: &before,
