@@ -7,6 +7,7 @@ use super::error::DiagnoseError;
 use super::findings::finding::{SingleRecord, Verdict};
 use super::findings::hand_over::Searched;
 use super::findings::per_record::InRecord;
+use super::innovations::criterion;
 use super::prepare::joined_records::name_of;
 use crate::data::{Record, Signal};
 use crate::evaluate::{Init, Simulation};
@@ -23,7 +24,8 @@ impl Diagnosis<'_> {
     /// that does not show in all of them: what only one record has is a compromise for all.
     ///
     /// Told is what is more probable for that record, with nothing in the others, than what is named
-    /// together: its sum of squares is smaller, at no more numbers.
+    /// together: its sum of squares is smaller, at no more numbers; or, where what is named together was
+    /// judged by innovations, their likelihood is larger.
     pub(super) fn single_records(
         &self,
         searched: &Searched,
@@ -42,12 +44,13 @@ impl Diagnosis<'_> {
         };
         let bare = runs(self.system);
         let scales = scales(records, &bare);
-        let left = |record: &Record, run: &Option<Outputs>| squares(record, run.as_ref(), &scales);
-        let of_bare: Vec<f64> = records.iter().zip(&bare).map(|(r, run)| left(r, run)).collect();
+        let left = |record: &Record, system: &System| match named && searched.by_innovations {
+            true => criterion(system, record).map_or(f64::INFINITY, |criterion| -criterion),
+            false => squares(record, outputs(system, record).as_ref(), &scales),
+        };
+        let of_bare: Vec<f64> = records.iter().map(|record| left(record, self.system)).collect();
         let joint = match named {
-            true => {
-                records.iter().zip(runs(&searched.extended)).map(|(r, run)| left(r, &run)).sum()
-            }
+            true => records.iter().map(|record| left(record, &searched.extended)).sum(),
             false => f64::INFINITY,
         };
         let names: Vec<String> = records.iter().enumerate().map(|(i, r)| name_of(r, i)).collect();
@@ -61,7 +64,7 @@ impl Diagnosis<'_> {
             let (Some(first), Verdict::CausesFound) = (first, own.verdict) else { continue };
             let with = runs(&own.extended);
             let others: f64 = of_bare.iter().sum::<f64>() - of_bare[i];
-            if !(left(record, &with[i]) + others < joint) {
+            if !(left(record, &own.extended) + others < joint) {
                 continue;
             }
             let said: Option<Vec<InRecord>> = (0..records.len())

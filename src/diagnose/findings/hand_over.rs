@@ -41,6 +41,8 @@ pub(crate) struct Searched {
     pub notes: Vec<Note>,
     pub series: Series,
     pub extended: System,
+    /// Whether causes were judged by innovations: what free runs leave then says nothing of them.
+    pub by_innovations: bool,
 }
 
 /// What was found before it is put together.

@@ -117,6 +117,7 @@ impl Context<'_, '_> {
             causes,
             series,
             extended,
+            by_innovations: chosen.is_by_innovations(),
             verdict_probability: match verdict {
                 Verdict::NothingFound => Some(chosen.found.nothing),
                 Verdict::CausesFound => Some(1.0 - chosen.found.nothing),

@@ -3,8 +3,16 @@
 use crate::likelihood::{Fitted, LikelihoodError, NoiseModel, Predictor, Scope};
 
 use crate::candidates::library::Allowed;
+use crate::data::Record;
 use crate::fit::problem::{Grain, Model, Problem};
 use crate::system::System;
+
+/// Log likelihood of a system on a record less the price of the noise's numbers, under the noise that the
+/// record calls for; `None` where it cannot be run.
+pub(crate) fn criterion(system: &System, record: &Record) -> Option<f64> {
+    let predictor = Predictor::new(system, std::slice::from_ref(record)).ok()?;
+    Some(Rivals::of(&predictor).best()).filter(|best| best.is_finite())
+}
 
 /// The predictor of the model that is diagnosed, on the samples of a problem.
 pub(super) fn predictor(

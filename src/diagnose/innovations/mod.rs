@@ -18,5 +18,6 @@ mod conversion;
 mod missing;
 mod reconsidered;
 
+pub(crate) use compete::criterion;
 pub(crate) use missing::completed;
 pub(crate) use reconsidered::{finish, search};
