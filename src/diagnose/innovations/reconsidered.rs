@@ -40,17 +40,18 @@ pub(crate) fn search(
     Ok(reconsidered(prepared, allowed, most, answer, watch))
 }
 
-/// What the innovations find about a model that forgets nothing within its records, where noise inside
-/// the plant is called for beside it: a free run of such a model follows that noise for good, and not the
-/// causes (Ljung, "System Identification", 2nd ed., section 3.2).
+/// What the innovations find in a closed loop about a model that forgets nothing within its records,
+/// where noise inside the plant is called for beside it. A free run of such a model follows that noise,
+/// which the loop feeds back, and not the causes (Forssell and Ljung, Automatica 35, 1999).
 fn directly(
     prepared: &mut Prepared<'_>,
     allowed: &Allowed,
     most: usize,
     watch: &dyn Watch,
 ) -> Result<Option<Finished>, DiagnoseError> {
-    let asked = may_be_asked(prepared, allowed, most);
-    if !asked || forgets(prepared, allowed).unwrap_or(true) {
+    if !may_be_asked(prepared, allowed, most)
+        || !drifts_in_a_loop(prepared, allowed).unwrap_or(false)
+    {
         return Ok(None);
     }
     let nothing = prepared.search(allowed, 0, watch)?;
@@ -60,9 +61,18 @@ fn directly(
     Ok(found.filter(|found| is_called_for(prepared, allowed, found).unwrap_or(false)))
 }
 
-/// Whether the model forgets its start, and what disturbs it, within its records.
-fn forgets(prepared: &Prepared<'_>, allowed: &Allowed) -> Option<bool> {
-    predictor(&prepared.problem, &prepared.start, allowed).ok()?.forgets().ok()
+/// Whether a model forgets nothing within its records, and an input reacts to what it did not foresee.
+fn drifts_in_a_loop(prepared: &Prepared<'_>, allowed: &Allowed) -> Option<bool> {
+    let problem = &prepared.problem;
+    let base = predictor(problem, &prepared.start, allowed).ok()?;
+    if base.forgets().ok()? {
+        return Some(false);
+    }
+    let NoiseModel::Predictor(noise) = base.fit_noise().ok()?.noise else { return None };
+    let innovations = base.innovations(&noise, true).ok()?.values;
+    let both = problem.y.iter().zip(&innovations);
+    let foreseen: Vec<Vec<f64>> = both.map(|(y, e)| foreseen(y, e.iter())).collect();
+    Some(prepared.context().feedback_of(&foreseen).is_some())
 }
 
 /// Whether noise inside the plant is clearly more probable beside an answer.
