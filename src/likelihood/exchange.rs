@@ -1,8 +1,8 @@
 //! Exchanges: a law that is a parameter in disguise.
 //!
-//! Causes come one after the other, so that what was found first was fitted without the others. Beside
-//! them, every law of one number is tried as each free parameter of the model in its place; the likelier
-//! of the two stays. Source: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.4
+//! Causes come one after the other, so that what was found first was fitted without the others. With all of
+//! them there, every law of one number is tried as each free parameter of the model in its place; the
+//! likelier of the two stays, and one that is as likely is said. Source: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.4
 //! (sequential replacement).
 
 use rayon::prelude::*;
@@ -12,18 +12,45 @@ use super::hypothesis::{Hypothesis, Part};
 use super::predictor::Predictor;
 use super::tangent::Site;
 
+/// A law of a cause by a parameter: what it gains, and all causes after it.
+struct Exchange {
+    cause: usize,
+    part: usize,
+    parameter: usize,
+    gain: f64,
+    causes: Vec<Found>,
+    fitted: Hypothesis,
+}
+
+/// Notes which laws may be a parameter in disguise, with probabilities.
+fn noted(found: &mut [Found], tried: &[Exchange]) {
+    for (i, cause) in found.iter_mut().enumerate() {
+        let own = || tried.iter().filter(|e| e.cause == i);
+        let all = 1.0 + own().map(|e| e.gain.exp()).sum::<f64>();
+        cause.disguised =
+            own().map(|e| (e.part, e.parameter, cause.law * e.gain.exp() / all)).collect();
+        cause.law /= all;
+    }
+}
+
 impl Predictor {
-    /// The causes after the best exchange of a law by a parameter, again until none is better; whether
-    /// there was any.
+    /// The causes after the best exchange of a law by a parameter; whether there was one. Where there is
+    /// none, laws that a parameter explains as well are noted as such.
     pub(crate) fn exchanged(&self, found: &mut Vec<Found>, now: &mut Hypothesis) -> bool {
-        let mut any = false;
-        while let Some((better, fitted)) = self.best_exchange(found, now) {
-            (*found, *now, any) = (better, fitted, true);
+        let tried = self.exchanges(found, now);
+        match tried.iter().filter(|e| e.gain > 0.0).max_by(|a, b| a.gain.total_cmp(&b.gain)) {
+            Some(best) => {
+                (*found, *now) = (best.causes.clone(), best.fitted.clone());
+                true
+            }
+            None => {
+                noted(found, &tried);
+                false
+            }
         }
-        any
     }
 
-    fn best_exchange(&self, found: &[Found], now: &Hypothesis) -> Option<(Vec<Found>, Hypothesis)> {
+    fn exchanges(&self, found: &[Found], now: &Hypothesis) -> Vec<Exchange> {
         let is_moved =
             |p: usize| now.parts.iter().any(|part| matches!(part, Part::Parameter(q) if *q == p));
         let signals = &self.model.plan.signals.parameters;
@@ -39,27 +66,25 @@ impl Predictor {
             }
         }
         let value = self.merit(now, found);
-        let one = |&(i, j, p): &(usize, usize, usize)| {
+        let one = |&(cause, part, parameter): &(usize, usize, usize)| {
             let mut causes = found.to_vec();
-            causes[i].parts.remove(j);
-            if causes[i].parts.is_empty() {
-                causes.remove(i);
+            causes[cause].parts.remove(part);
+            if causes[cause].parts.is_empty() {
+                causes.remove(cause);
             }
-            causes.push(self.as_cause(p));
+            causes.push(self.as_cause(parameter));
             let fitted = self.fit(joined(&causes), &now.theta, &now.noise)?;
             let fitted = self.refit(fitted)?;
             let gain = self.merit(&fitted, &causes) - value;
-            (gain > 0.0).then_some((gain, causes, fitted))
+            dealt(&mut causes, &fitted);
+            // against the law that it was exchanged for
+            if let Some(last) = causes.last_mut() {
+                last.law = 1.0 / (1.0 + (-gain).exp());
+                last.at_place = last.law;
+            }
+            Some(Exchange { cause, part, parameter, gain, causes, fitted })
         };
-        let best = tried.par_iter().filter_map(one).max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let (gain, mut causes, fitted) = best;
-        dealt(&mut causes, &fitted);
-        // against the law that it was exchanged for
-        if let Some(last) = causes.last_mut() {
-            last.law = 1.0 / (1.0 + (-gain).exp());
-            last.at_place = last.law;
-        }
-        Some((causes, fitted))
+        tried.par_iter().filter_map(one).collect()
     }
 
     /// A parameter as a cause.
@@ -73,6 +98,7 @@ impl Predictor {
             at_place: 1.0,
             others: vec![],
             chosen_again: true,
+            disguised: vec![],
         }
     }
 }

@@ -59,10 +59,12 @@ impl Predictor {
             log_likelihood: first.log_likelihood,
         };
         let mut nothing = 1.0;
-        let (mut found, mut now) =
-            fit.one_by_one((vec![], null.clone()), most, stop, &mut nothing)?;
-        if !stop() && fit.exchanged(&mut found, &mut now) {
+        let (mut found, mut now) = (vec![], null.clone());
+        loop {
             (found, now) = fit.one_by_one((found, now), most, stop, &mut nothing)?;
+            if stop() || !fit.exchanged(&mut found, &mut now) {
+                break;
+            }
         }
         fit.pruned_causes(&mut found, &mut now, &null);
         let all = Self { start: fit.start.clone(), ..self.clone() };
@@ -148,6 +150,7 @@ impl Predictor {
             at_place: sum(survey.sets.iter().filter(at).collect()).min(1.0),
             others: others.map(|other| self.fitted_laws(other.clone())).collect(),
             chosen_again: false,
+            disguised: vec![],
         }
     }
 
@@ -286,6 +289,11 @@ impl Predictor {
             probability: cause.law,
             place_probability: cause.at_place,
             others: cause.others,
+            disguised: cause
+                .disguised
+                .into_iter()
+                .map(|(part, p, chance)| (part, self.name(Site::Parameter(p)), chance))
+                .collect(),
         }
     }
 }

@@ -27,6 +27,8 @@ pub struct NamedCause {
     pub place_probability: f64,
     /// Other sets that were fitted in its stead, the most probable first.
     pub others: Vec<FittedLaws>,
+    /// Laws that may be another value of a parameter: number of the law, parameter, probability.
+    pub disguised: Vec<(usize, String, f64)>,
 }
 
 impl NamedCause {

@@ -15,6 +15,8 @@ pub(crate) struct Found {
     pub at_place: f64,
     pub others: Vec<FittedLaws>,
     pub chosen_again: bool,
+    /// Laws that may be a parameter in disguise: number of the part, parameter, probability.
+    pub disguised: Vec<(usize, usize, f64)>,
 }
 
 /// All parts of causes, in their order.

@@ -42,7 +42,11 @@ pub(super) fn finished(
     for cause in &found.causes {
         let own = laws_of(&known, cause, theta)?;
         let alike = alike(&known, cause);
-        slots.extend(own.iter().map(|law| slot(&law.added.cause, cause, &alike)));
+        for (number, law) in own.iter().enumerate() {
+            let mut alike = alike.clone();
+            alike.extend(in_disguise(&known, cause, number));
+            slots.push(slot(&law.added.cause, cause, &alike));
+        }
         laws.extend(own);
     }
     let withdrawn = found.withdrawn.iter().filter_map(|cause| laws_of(&known, cause, theta));
@@ -202,6 +206,21 @@ fn alike(known: &[Arc<Candidate>], cause: &NamedCause) -> Vec<(Arc<Candidate>, f
     found.sort_by(|a, b| b.1.total_cmp(&a.1));
     found.truncate(SET - 1);
     found
+}
+
+/// Parameters that a law of a cause may be another value of, with their probabilities.
+fn in_disguise(
+    known: &[Arc<Candidate>],
+    cause: &NamedCause,
+    number: usize,
+) -> Vec<(Arc<Candidate>, f64)> {
+    let own =
+        cause.disguised.iter().filter(|(law, _, chance)| *law == number && *chance > LOOK_ALIKE);
+    let as_known = |(_, name, chance): &(usize, String, f64)| {
+        let is_it = |c: &&Arc<Candidate>| matches!(c.wire, Wire::Parameter(_)) && c.into == *name;
+        Some((known.iter().find(is_it)?.clone(), *chance))
+    };
+    own.filter_map(as_known).collect()
 }
 
 fn slot(own: &Arc<Candidate>, cause: &NamedCause, alike: &[(Arc<Candidate>, f64)]) -> Slot {
