@@ -35,6 +35,10 @@ pub fn run(args: &Args, seed: u64, threads: Option<usize>, look: &Console) -> Re
     if document.has("systems") {
         return exam::run(&document, config, args, seed, threads, look);
     }
+    if args.memory.is_some() {
+        let what = "--memory bounds the diagnoses of an exam, and this study trains: leave it out";
+        return Err(Failure::work(what.into()));
+    }
     let study: MonteCarlo = document.read()?;
     let located = |error| Failure::from(error).in_file(config, &document, [""; 2]);
     study.check().map_err(located)?;

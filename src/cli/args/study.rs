@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as Arguments, Subcommand};
+use lacuna::diagnose::Memory;
 
 #[derive(Debug, Clone, Arguments)]
 pub struct Study {
@@ -20,6 +21,10 @@ pub struct Study {
     /// Only these cases, by their keys; each writes one file, and what is there is not done again
     #[arg(long, value_name = "KEY", num_args = 1.., conflicts_with = "shard")]
     pub case: Vec<String>,
+    /// Memory that one diagnosis of an exam may take, such as 2GB or 512MiB, as many at once as there are
+    /// threads; what does not fit is left out by rule [default: half of the machine's]
+    #[arg(long, value_name = "SIZE")]
+    pub memory: Option<Memory>,
     /// Folder for the results
     #[arg(long, value_name = "DIR", default_value = "lacuna-out", value_parser = super::folder::folder())]
     pub out: PathBuf,

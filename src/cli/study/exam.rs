@@ -28,7 +28,8 @@ pub fn run(
     threads: Option<usize>,
     look: &Console,
 ) -> Result<u8, Failure> {
-    let (exam, systems) = configured(document, config)?;
+    let (mut exam, systems) = configured(document, config)?;
+    exam.memory = args.memory.unwrap_or_default();
     if args.cases {
         return super::list(exam.cases()?.iter().map(Case::key), look);
     }

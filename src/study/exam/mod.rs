@@ -36,6 +36,7 @@ pub use truth::{CaseTruth, Hidden};
 use super::StudyError;
 use super::generate::fits;
 use crate::data::Excitation;
+use crate::diagnose::Memory;
 
 /// What is asked in an exam: what a configuration file holds. Paths are seen from that file.
 ///
@@ -113,6 +114,9 @@ pub struct Exam {
     /// Triples drawn per machine and seed.
     #[serde(default)]
     pub triples: usize,
+    /// Memory that one diagnosis may take; no part of the exam, whose cases stay the same.
+    #[serde(skip)]
+    pub memory: Memory,
 }
 
 fn sizes() -> Vec<f64> {

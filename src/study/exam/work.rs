@@ -113,7 +113,8 @@ impl Exam {
         }
         made.third.source = format!("case {} of the exam, third record", case.number);
         let truth = CaseTruth::of(case, machine, &made, exam)?;
-        let diagnosis = Diagnosis::of(&made.baseline).without(&truth.excluded());
+        let diagnosis =
+            Diagnosis::of(&made.baseline).without(&truth.excluded()).memory(self.memory);
         let finding = diagnosis.run(&made.records, None, &())?;
         let share = removed(&finding.extended, &made.baseline, &made.third)?;
         Ok(Marks::of(&truth, &Answer::of(case.number, &finding), Some(share)))
