@@ -49,6 +49,7 @@ mod screen;
 mod select;
 mod sets;
 mod share;
+mod smoother;
 mod std_error;
 mod tangent;
 mod transition;

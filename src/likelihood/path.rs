@@ -72,7 +72,7 @@ impl Path {
     }
 
     /// Sum over samples of the product of what two forces do to the next states.
-    pub fn pushes_together(&self, a: usize, b: usize) -> f64 {
+    pub fn push_product(&self, a: usize, b: usize) -> f64 {
         let (n, nf) = (self.n, self.forces);
         self.g
             .chunks_exact(n * nf)
@@ -81,8 +81,8 @@ impl Path {
 
     /// Whether two forces push the same way all along.
     pub fn is_parallel(&self, a: usize, b: usize) -> bool {
-        let both = self.pushes_together(a, b);
-        let each = self.pushes_together(a, a) * self.pushes_together(b, b);
+        let both = self.push_product(a, b);
+        let each = self.push_product(a, a) * self.push_product(b, b);
         each > 0.0 && both * both > (1.0 - 1e-9) * each
     }
 

@@ -1,12 +1,10 @@
-//! The likelihood of the innovations on a frozen linearisation, its gradient, and the smoother.
+//! The likelihood of the innovations on a frozen linearisation, and its gradient.
 //!
 //! log L = -1/2 sum( log(2 pi s) + e^2 / s ) over the scalar innovations e of variance s.
 //! With r, N, u and D of the backward recursion (`backward.rs`),
-//! d log L / dr_o = 1/2 sum(u^2 - D), d log L / dq_c = 1/2 sum( (g' r)^2 - g' N g ), and the smoothed
-//! state is x- + P- r with covariance P- - P- N P-.
-//! Sources: de Jong, JASA 83, 1988 (smoother, no inverse of P); Koopman and Shephard, Biometrika 79,
-//! 1992 (score); Durbin and Koopman, "Time Series Analysis by State Space Methods", 2012, ch. 4 and 7.
-//! The smoothed states are those of Rauch, Tung and Striebel, AIAA J. 3, 1965.
+//! d log L / dr_o = 1/2 sum(u^2 - D), d log L / dq_c = 1/2 sum( (g' r)^2 - g' N g ).
+//! Sources: Koopman and Shephard, Biometrika 79, 1992 (score); Durbin and Koopman, "Time Series Analysis
+//! by State Space Methods", 2012, ch. 4 and 7.
 
 use super::backward::Back;
 use super::kalman::Kalman;
@@ -38,13 +36,6 @@ pub(crate) struct Pass {
 const ASKED: usize = 16;
 /// Relative change from sample to sample up to which variances of innovations are stationary.
 const SETTLED: f64 = 1e-13;
-
-/// Smoothed augmented states and their variances, sample by sample.
-#[derive(Debug, Clone)]
-pub(crate) struct Smoothed {
-    pub mean: Vec<f64>,
-    pub variance: Vec<f64>,
-}
 
 impl Pass {
     /// Room for passes along a path; `kept` says whether covariances are wanted.
@@ -122,27 +113,6 @@ impl Pass {
         let same = |at: usize| self.s[at] == self.s[at + ny] && self.z[at].is_finite();
         path.is_as_before(k + 1)
             && (k * ny..(k + 1) * ny).all(|at| same(at) && self.z[at + ny].is_finite())
-    }
-
-    /// Smoothed states and variances, after a forward pass that kept its covariances.
-    pub fn smoothed(&self, path: &Path, noise: &Noise) -> Smoothed {
-        let na = self.layout.len();
-        let mut to = Smoothed { mean: self.mean.clone(), variance: vec![0.0; path.len * na] };
-        let mut row = vec![0.0; na];
-        backward(self, path, noise, &mut |at, back| {
-            let At::Sample(k) = at else { return };
-            let p = &self.p[k * na * na..][..na * na];
-            for i in 0..na {
-                let own = &p[i * na..][..na];
-                to.mean[k * na + i] += own.iter().zip(back.r()).map(|(p, r)| p * r).sum::<f64>();
-                for (j, row) in row.iter_mut().enumerate() {
-                    *row = own.iter().zip(back.n.plain(j)).map(|(p, n)| p * n).sum();
-                }
-                let gone: f64 = row.iter().zip(own).map(|(n, p)| n * p).sum();
-                to.variance[k * na + i] = (own[i] - gone).max(0.0);
-            }
-        });
-        to
     }
 }
 
@@ -230,7 +200,7 @@ fn is_settled(
 }
 
 /// Where the backward recursion stands.
-enum At {
+pub(crate) enum At {
     /// Between a sample and the next, before the transition is undone.
     Between(usize),
     /// Before an output is gone through, with its score along the variance of its noise.
@@ -243,7 +213,7 @@ enum At {
 
 lacuna_core::per_isa! {
     /// The backward recursion, which says at each of its steps where it stands.
-    fn backward [] (
+    pub(crate) fn backward [] (
         pass: &Pass,
         path: &Path,
         noise: &Noise,

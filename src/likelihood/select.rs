@@ -202,7 +202,7 @@ impl Predictor {
         let plan = &self.model.plan;
         for c in (0..path.forces).filter(|&c| c >= plan.sizes.w || plan.may_push(c)) {
             let alike = |&other: &usize| path.is_parallel(c, other);
-            if path.pushes_together(c, c) > 0.0 && !kept.iter().any(alike) {
+            if path.push_product(c, c) > 0.0 && !kept.iter().any(alike) {
                 kept.push(c);
             }
         }
