@@ -27,6 +27,13 @@ pub enum Note {
         /// Memory that all samples would take, about.
         whole: Memory,
     },
+    /// There are too few samples for all parameters to move at once.
+    TooManyParameters {
+        /// Parameters that are not held.
+        parameters: usize,
+        /// Samples that are fitted.
+        samples: usize,
+    },
     /// Memory did not hold the effects of all laws side by side.
     LawsLeftOut {
         /// Laws that were judged alone only.

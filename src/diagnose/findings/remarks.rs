@@ -8,6 +8,7 @@ use crate::findings::note::Note;
 use crate::fit::finished::Finished;
 use crate::fit::found::LeftOut;
 use crate::fit::hypothesis::Track;
+use crate::fit::nuisance::too_many;
 use crate::fit::problem::Part;
 use crate::plan::natural;
 use crate::prepare::input_dependence::DEPENDS;
@@ -51,8 +52,8 @@ impl Context<'_, '_> {
         entries
     }
 
-    /// What else is worth knowing of what was found.
-    pub fn notes(&self, chosen: &Finished, causes: &[Cause]) -> Vec<Note> {
+    /// What else is worth knowing of what was found; `fixed` are parameters that were held.
+    pub fn notes(&self, chosen: &Finished, causes: &[Cause], fixed: &[String]) -> Vec<Note> {
         let mut notes = vec![];
         let model = &chosen.fitted.model;
         if !model.added.is_empty() && chosen.dependence > DEPENDS {
@@ -60,6 +61,10 @@ impl Context<'_, '_> {
         }
         if model.added.len() > 1 {
             notes.push(Note::JointLookAlikes);
+        }
+        if let Some(parameters) = too_many(self.problem, fixed) {
+            let samples = self.problem.samples(Part::Fit).count();
+            notes.push(Note::TooManyParameters { parameters, samples });
         }
         if let Some(LeftOut { laws, of, whole }) = chosen.found.left_out {
             let memory = self.problem.memory;

@@ -80,7 +80,7 @@ impl Context<'_, '_> {
             _ => Verdict::CausesFound,
         };
         let mut notes = self.of_the_record(&y_before);
-        notes.extend(self.notes(chosen, &causes));
+        notes.extend(self.notes(chosen, &causes, from.fixed));
         notes.extend(levels.into_iter().flatten());
         notes.extend(held);
         notes.extend(made_up_for(chosen.track, &causes, gain.error_removed));

@@ -14,6 +14,26 @@ pub(crate) const PRIOR: f64 = 0.15;
 /// Segments whose initial states are estimated at most.
 pub(crate) const SEGMENTS: usize = 120;
 
+/// Samples for each number below which Laplace's approximation is worrisome (Kass and Raftery, JASA 90,
+/// 1995, section 4.1.1).
+const EACH: usize = 5;
+
+/// Parameters that are not held, with their values.
+fn not_held<'a>(
+    problem: &'a Problem<'_>,
+    fixed: &'a [String],
+) -> impl Iterator<Item = (usize, f64)> + 'a {
+    let parameters = problem.base.signals.parameters.iter().enumerate();
+    let free = parameters.filter(|(_, p)| !p.fixed && !fixed.contains(&p.name));
+    free.map(|(i, p)| (i, p.value))
+}
+
+/// How many parameters may move, where the samples that are fitted are too few for all of them at once.
+pub(crate) fn too_many(problem: &Problem<'_>, fixed: &[String]) -> Option<usize> {
+    let count = not_held(problem, fixed).count();
+    (EACH * count > problem.samples(Part::Fit).count()).then_some(count)
+}
+
 /// The moving parts of models, with scales and priors.
 #[derive(Debug, Clone)]
 pub(crate) struct Nuisance {
@@ -43,16 +63,11 @@ impl Nuisance {
         }
     }
 
-    /// Initial states and all parameters that are not held.
+    /// Initial states and all parameters that are not held; none of them where they are too many.
     pub fn with_parameters(mut self, problem: &Problem<'_>, fixed: &[String]) -> Self {
-        let signals = &problem.base.signals;
-        self.free = signals
-            .parameters
-            .iter()
-            .enumerate()
-            .filter(|(_, p)| !p.fixed && !fixed.contains(&p.name))
-            .map(|(i, p)| (i, p.value))
-            .collect();
+        if too_many(problem, fixed).is_none() {
+            self.free = not_held(problem, fixed).collect();
+        }
         self
     }
 

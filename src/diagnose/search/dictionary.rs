@@ -16,6 +16,7 @@ use crate::fit::problem::{Grain, Part, Problem, Span};
 use crate::fit::step_size::ROUGH;
 use crate::memory::Memory;
 use crate::statistics::{deviation, dot, project, rms};
+use crate::watch::Watch;
 
 /// Shares of a budget: columns, whitened columns, everything else.
 const SHARES: u64 = 3;
@@ -26,6 +27,8 @@ const POINTS: usize = 2;
 /// secant's, as a share of the residual.
 const GENTLE: (f64, f64) = (0.02, 0.5);
 const LARGE: f64 = 0.7;
+/// Probes that are made before it is asked whether to stop.
+const AT_ONCE: usize = 8192;
 
 /// Spread of the outputs in units of their scales.
 pub(super) fn spread(problem: &Problem<'_>) -> f64 {
@@ -48,12 +51,14 @@ pub(super) fn room(problem: &Problem<'_>) -> usize {
 }
 
 /// All grid points about a model, or those that are `wanted`. Where memory does not hold them, they are
-/// made some candidates at a time and those stay that explain most of the residual, each alone.
+/// made some candidates at a time and those stay that explain most of the residual, each alone. Where
+/// somebody asks to stop, the rest is not made.
 pub(super) fn dictionary(
     problem: &Problem<'_>,
     about: &About<'_>,
     candidates: &[Arc<Candidate>],
     wanted: Option<&BTreeSet<(usize, usize)>>,
+    watch: &dyn Watch,
 ) -> Dictionary {
     let (model, residual) = (about.model, about.residual);
     let spread = spread(problem);
@@ -86,11 +91,11 @@ pub(super) fn dictionary(
     let (all, of) = (probes.len(), wanted_laws(&probes));
     let at_once = match all * column > room {
         true => (room / 4 / column.max(1)).max(1),
-        false => all,
+        false => all.min(AT_ONCE),
     };
     let mut kept = Leading::new(about, room);
     let mut rest = &mut probes[..];
-    while !rest.is_empty() {
+    while !rest.is_empty() && !watch.stopped() {
         let (block, after) = rest.split_at_mut(block(rest, at_once));
         let hits = steer(problem, &mut sharing, candidates, block, &present, (1e-6, gentle), true);
         kept.take(tangents(candidates, hits));

@@ -36,6 +36,10 @@ pub fn note(note: &Note) -> String {
              records, each as a record of its own: {memory} of memory were allowed, and all samples \
              would take about {whole} (--memory)."
         ),
+        Note::TooManyParameters { parameters, samples } => format!(
+            "{parameters} parameters were not let move together, only each by itself: {samples} samples are \
+             fewer than five for each. Hold those that you are sure of (--fix, or `fixed` in the model file)."
+        ),
         Note::LawsLeftOut { laws, of, memory, whole } => format!(
             "Memory of {memory} does not hold the effects of all {of} laws side by side. The {laws} that \
              explain least of what is left, each alone, were not weighed together with others: two laws \
