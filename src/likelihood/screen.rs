@@ -86,17 +86,10 @@ impl Predictor {
             for &e in &distinct {
                 let z = column(&path.seen, entries, e);
                 let own = plan.sources.entries[e].1;
-                // a law of an input in a channel that pushes as it does is one of the input's own path
-                let path_of = match own {
-                    Origin::Input(i) if c == nw + i || c < nw && path.is_parallel(c, nw + i) => {
-                        Some(nw + i)
-                    }
-                    _ => None,
-                };
-                let (c, spot) = match path_of {
-                    Some(input) => (input, Spot::OwnPath { input: true }),
-                    None if c < nw => (c, Spot::Channel { velocity: plan.is_velocity(e) }),
-                    None => continue,
+                let spot = match c < nw {
+                    true => Spot::Channel { velocity: plan.is_velocity(e) },
+                    false if own == Origin::Input(c - nw) => Spot::OwnPath { input: true },
+                    false => continue,
                 };
                 let most = moved.iter().map(|m| m[e].abs()).fold(0.0, f64::max);
                 let direction = Some(moved[at][e]).filter(|d| d.abs() > DIRECT * most);

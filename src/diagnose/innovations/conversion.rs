@@ -9,7 +9,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::library::{Allowed, library};
 use crate::criteria::LOOK_ALIKE;
-use crate::effect::Role;
+use crate::effect::{Role, curve};
 use crate::error::DiagnoseError;
 use crate::findings::note::{Disturbance, Disturbs};
 use crate::fit::covariance::Precision;
@@ -143,7 +143,8 @@ fn laws_of(known: &[Arc<Candidate>], cause: &NamedCause, theta: &[f64]) -> Optio
         return Some(vec![Law { added, covariance: DMatrix::from_element(1, 1, variance) }]);
     }
     let one = |(i, placed): (usize, &Placed)| {
-        let (own, factor) = known.iter().find_map(|c| Some((c, stands_for(c, placed)?)))?;
+        let own = known.iter().find_map(|c| Some((c, stands_for(c, placed)?)));
+        let (own, factor) = own.or_else(|| on_its_path(known, placed))?;
         let mut parameters = placed.effect.card().values();
         let mut scale = DVector::repeat(parameters.len(), 1.0);
         for &i in &own.linear {
@@ -179,6 +180,28 @@ fn stands_for(cause: &Candidate, placed: &Placed) -> Option<f64> {
         *into == placed.into && (*of == placed.of || cause.of == placed.of)
     };
     cause.twins.iter().find(twin).map(|(_, _, factor)| *factor)
+}
+
+/// The law of an input's own path that a law of that input is in a channel which pushes as it does: a linear
+/// one is a gain. The factor of its coefficient is that of its neighbours on the path.
+fn on_its_path<'a>(
+    known: &'a [Arc<Candidate>],
+    placed: &Placed,
+) -> Option<(&'a Arc<Candidate>, f64)> {
+    let input = placed.of.as_ref()?;
+    let path = || known.iter().filter(|c| c.into == *input && c.of.as_ref() == Some(input));
+    let twin = |c: &Arc<Candidate>| {
+        let own = |(into, ..): &&(String, Option<String>, f64)| *into == placed.into;
+        c.twins.iter().find(own).map(|(_, _, factor)| *factor)
+    };
+    let factor = path().find_map(twin)?;
+    let probes = [-2.0, -0.5, 0.3, 1.0];
+    let wanted = curve(placed.effect.as_ref(), &[1.0], &probes);
+    let plain = |c: &&Arc<Candidate>| {
+        let one = c.card.parameters.len() == 1 && placed.effect.card().parameters.len() == 1;
+        one && c.linear == [0] && curve(c.shape.as_ref(), &[1.0], &probes) == wanted
+    };
+    Some((path().find(plain)?, factor))
 }
 
 /// Other causes that may be at work instead, with their probabilities.

@@ -19,6 +19,8 @@ const WHITE: f64 = 3.0;
 /// By how much noise inside the plant must be more probable for a search of its own: odds of 150 to
 /// 1 (Kass and Raftery, JASA 90, 1995: very strong).
 const CLEARLY: f64 = 5.0;
+/// Share of the mean square that a free run leaves for which an answer has to account by itself.
+const ACCOUNTED: f64 = 0.95;
 /// How much larger than without them causes may leave a free run.
 const WORSE: f64 = 1.05;
 
@@ -57,8 +59,16 @@ fn directly(
     let nothing = prepared.search(allowed, 0, watch)?;
     watch.report(0.1, "searching by innovations");
     let found = by_innovations(prepared, allowed, most, &nothing, watch);
-    let found = found.filter(|found| found.causes() > 0);
+    let found = found.filter(|found| found.causes() > 0 && accounts(prepared, found));
     Ok(found.filter(|found| is_called_for(prepared, allowed, found).unwrap_or(false)))
+}
+
+/// Whether an answer accounts for nearly all that a free run of the model leaves: what does not, has to
+/// compete with the answer of free runs.
+fn accounts(prepared: &Prepared<'_>, found: &Finished) -> bool {
+    let of = |model| left(&prepared.problem, model);
+    let both = of(&prepared.start).zip(of(&found.fitted.model));
+    both.is_some_and(|(before, after)| 1.0 - (after / before).powi(2) > ACCOUNTED)
 }
 
 /// Whether a model forgets nothing within its records, and an input reacts to what it did not foresee.
