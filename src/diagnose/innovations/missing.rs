@@ -7,6 +7,7 @@ use crate::findings::cause::{ExplainedBy, MissingForce};
 use crate::findings::hand_over::Searched;
 use crate::findings::note::Note;
 use crate::fit::finished::Finished;
+use crate::fit::problem::Grain;
 use crate::prepare::prepared::Prepared;
 
 /// Coordinates that are told of each channel.
@@ -14,8 +15,9 @@ const REPORTED: usize = 4;
 
 /// What a search says, with the missing force and what disturbs the plant.
 pub(crate) fn completed(prepared: &Prepared<'_>, chosen: &Finished, of: Searched) -> Searched {
-    // what leaves white noise lacks no force
-    let lacks = chosen.causes() > 0 || !is_white(prepared, chosen);
+    // a model that leaves white noise lacks no force
+    let bare = prepared.problem.simulate(&prepared.start, Grain::Fine);
+    let lacks = !bare.is_some_and(|y| is_white(prepared, &y));
     let missing = if lacks { missing(prepared) } else { vec![] };
     let mut of = Searched { missing, ..of };
     if let Some(disturbances) = chosen.inside.clone().filter(|all| !all.is_empty()) {

@@ -134,7 +134,7 @@ fn reconsidered(
     answer: Finished,
     watch: &dyn Watch,
 ) -> Answer {
-    if !may_be_asked(prepared, allowed, most) || watch.stopped() || is_white(prepared, &answer) {
+    if !may_be_asked(prepared, allowed, most) || watch.stopped() || is_white(prepared, &answer.y) {
         return (answer, None);
     }
     watch.report(0.9, "asking for noise inside the plant");
@@ -144,11 +144,11 @@ fn reconsidered(
     }
 }
 
-/// Whether a free run of the answer leaves white noise of every output.
-pub(super) fn is_white(prepared: &Prepared<'_>, answer: &Finished) -> bool {
+/// Whether a free run with outputs `y` leaves white noise of every output.
+pub(super) fn is_white(prepared: &Prepared<'_>, y: &[Vec<f64>]) -> bool {
     let problem = &prepared.problem;
     (0..problem.y.len()).all(|o| {
-        let off: Vec<f64> = problem.y[o].iter().zip(&answer.y[o]).map(|(a, b)| a - b).collect();
+        let off: Vec<f64> = problem.y[o].iter().zip(&y[o]).map(|(a, b)| a - b).collect();
         whiteness(&problem.counted(o, &off, Part::All)) < WHITE
     })
 }
