@@ -44,13 +44,19 @@ impl Diagnosis<'_> {
         };
         let bare = runs(self.system);
         let scales = scales(records, &bare);
-        let left = |record: &Record, system: &System| match named && searched.by_innovations {
+        let left = |system: &System, (record, run): (&Record, &Option<Outputs>)| match named
+            && searched.by_innovations
+        {
             true => criterion(system, record).map_or(f64::INFINITY, |criterion| -criterion),
-            false => squares(record, outputs(system, record).as_ref(), &scales),
+            false => squares(record, run.as_ref(), &scales),
         };
-        let of_bare: Vec<f64> = records.iter().map(|record| left(record, self.system)).collect();
+        let of_bare: Vec<f64> =
+            records.iter().zip(&bare).map(|both| left(self.system, both)).collect();
         let joint = match named {
-            true => records.iter().map(|record| left(record, &searched.extended)).sum(),
+            true => {
+                let extended = &searched.extended;
+                records.iter().zip(&runs(extended)).map(|both| left(extended, both)).sum()
+            }
             false => f64::INFINITY,
         };
         let names: Vec<String> = records.iter().enumerate().map(|(i, r)| name_of(r, i)).collect();
@@ -64,7 +70,7 @@ impl Diagnosis<'_> {
             let (Some(first), Verdict::CausesFound) = (first, own.verdict) else { continue };
             let with = runs(&own.extended);
             let others: f64 = of_bare.iter().sum::<f64>() - of_bare[i];
-            if !(left(record, &own.extended) + others < joint) {
+            if !(left(&own.extended, (record, &with[i])) + others < joint) {
                 continue;
             }
             let said: Option<Vec<InRecord>> = (0..records.len())

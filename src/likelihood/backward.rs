@@ -9,7 +9,7 @@
 use super::noise::{Component, Layout, Noise};
 use super::path::Path;
 use super::rows::{Quad, Rows, add, combine, dot};
-use super::transition::Augmented;
+use super::transition::augment;
 
 /// The backward recursion.
 pub(crate) struct Back {
@@ -22,7 +22,7 @@ pub(crate) struct Back {
     nk: Vec<Quad>,
     own: Vec<Quad>,
     m: Rows,
-    transition: Augmented,
+    f: Rows,
 }
 
 impl Back {
@@ -38,13 +38,13 @@ impl Back {
             nk: zeros(),
             own: zeros(),
             m: Rows::zeros(na, na),
-            transition: Augmented::new(layout),
+            f: Rows::zeros(na, na),
         }
     }
 
     pub fn restart(&mut self) {
         self.r.fill([0.0; 4]);
-        self.n.fill(0.0);
+        self.n.clear();
     }
 
     /// Sum of what is still to come.
@@ -126,8 +126,8 @@ impl Back {
         stationary: bool,
     ) {
         let na = self.na;
-        self.transition.of(path, k, layout, noise);
-        let f = &self.transition.f;
+        augment(&mut self.f, path.a(k), path.g(k), layout, noise);
+        let f = &self.f;
         combine(&mut self.own, &self.r.as_flattened()[..na], f);
         std::mem::swap(&mut self.r, &mut self.own);
         if stationary {
@@ -136,7 +136,7 @@ impl Back {
         for i in 0..na {
             combine(self.m.row_mut(i), &self.n.plain(i)[..na], f);
         }
-        self.n.fill(0.0);
+        self.n.clear();
         for i in 0..na {
             for j in 0..na {
                 let factor = f.plain(i)[j];

@@ -2,8 +2,8 @@
 //!
 //! Causes come one after the other, so that what was found first was fitted without the others. With all of
 //! them there, every law of one number is tried as each free parameter of the model in its place; the
-//! likelier of the two stays, and one that is as likely is said. Source: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.4
-//! (sequential replacement).
+//! likelier of the two stays, and one that is as likely is said.
+//! Source: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.4 (sequential replacement).
 
 use rayon::prelude::*;
 

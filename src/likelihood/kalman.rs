@@ -8,7 +8,7 @@
 
 use super::noise::{Layout, Noise};
 use super::rows::{Quad, Rows, add, combine, dot};
-use super::transition::Augmented;
+use super::transition::augment;
 
 /// A covariance and the room that its recursion needs: nothing is allocated on the way.
 #[derive(Debug, Clone)]
@@ -21,7 +21,8 @@ pub(crate) struct Kalman {
     v: Vec<Quad>,
     w: Vec<Quad>,
     m: Rows,
-    transition: Augmented,
+    f: Rows,
+    transposed: Rows,
 }
 
 impl Kalman {
@@ -36,7 +37,8 @@ impl Kalman {
             v: zeros(),
             w: zeros(),
             m: Rows::zeros(na, na),
-            transition: Augmented::new(layout),
+            f: Rows::zeros(na, na),
+            transposed: Rows::zeros(na, na),
         }
     }
 
@@ -60,7 +62,7 @@ impl Kalman {
 
     /// The start of a segment: variances of the states; those of the slow parts belong to them.
     pub fn start(&mut self, p0: &[f64], layout: &Layout, noise: &Noise) {
-        self.p.fill(0.0);
+        self.p.clear();
         for (i, &variance) in p0.iter().enumerate().take(layout.n) {
             self.p.plain_mut(i)[i] = variance;
         }
@@ -111,13 +113,13 @@ impl Kalman {
     #[inline(always)]
     pub fn predict(&mut self, a: &[f64], g: &[f64], layout: &Layout, noise: &Noise) {
         let (na, n, nf) = (self.na, layout.n, noise.white.len());
-        self.transition.place(a, g, layout, noise);
-        self.transition.transpose(na);
+        augment(&mut self.f, a, g, layout, noise);
+        self.transposed.transpose(&self.f, na);
         for i in 0..na {
-            combine(self.m.row_mut(i), &self.transition.f.plain(i)[..na], &self.p);
+            combine(self.m.row_mut(i), &self.f.plain(i)[..na], &self.p);
         }
         for i in 0..na {
-            combine(self.p.row_mut(i), &self.m.plain(i)[..na], &self.transition.transposed);
+            combine(self.p.row_mut(i), &self.m.plain(i)[..na], &self.transposed);
         }
         for (c, &q) in noise.white.iter().enumerate().filter(|(_, q)| **q > 0.0) {
             for i in 0..n {

@@ -71,21 +71,6 @@ impl Path {
         self.as_before = (0..self.len).map(same).collect();
     }
 
-    /// Sum over samples of the product of what two forces do to the next states.
-    pub fn push_product(&self, a: usize, b: usize) -> f64 {
-        let (n, nf) = (self.n, self.forces);
-        self.g
-            .chunks_exact(n * nf)
-            .fold(0.0, |sum, g| sum + (0..n).map(|i| g[i * nf + a] * g[i * nf + b]).sum::<f64>())
-    }
-
-    /// Whether two forces push the same way all along.
-    pub fn is_parallel(&self, a: usize, b: usize) -> bool {
-        let both = self.push_product(a, b);
-        let each = self.push_product(a, a) * self.push_product(b, b);
-        each > 0.0 && both * both > (1.0 - 1e-9) * each
-    }
-
     /// Row of output `o`.
     pub fn c(&self, k: usize, o: usize) -> &[f64] {
         &self.c[(k * self.outputs + o) * self.n..][..self.n]

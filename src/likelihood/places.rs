@@ -96,10 +96,7 @@ impl Predictor {
             None => all,
             // the offset of its site is part of a place
             Some((site, of)) => {
-                let own = |s: &Spotted| {
-                    s.site == site && s.source == of
-                        || s.source.is_none() && s.site.pushes_as(site, &path)
-                };
+                let own = |s: &Spotted| s.site == site && (s.source == of || s.source.is_none());
                 all.into_iter().filter(own).collect()
             }
         };
@@ -211,8 +208,7 @@ impl Predictor {
         let starts: Vec<Vec<Part>> = match spot.site {
             Site::Parameter(p) => vec![vec![Part::Parameter(p)]],
             _ => {
-                let offset =
-                    spots.iter().find(|s| s.source.is_none() && s.site.pushes_as(spot.site, path));
+                let offset = spots.iter().find(|s| s.site == spot.site && s.source.is_none());
                 sets(path, &place.noise, spot, offset)
             }
         };

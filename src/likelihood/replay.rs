@@ -10,6 +10,7 @@ use super::backward::Back;
 use super::kalman::Kalman;
 use super::noise::{Component, Layout, Noise};
 use super::path::Path;
+use super::rows::SETTLED;
 
 /// What a forward pass leaves behind; tables are sample by sample.
 #[derive(Debug, Clone)]
@@ -34,8 +35,6 @@ pub(crate) struct Pass {
 
 /// How often it is asked whether a covariance is stationary.
 const ASKED: usize = 16;
-/// Relative change from sample to sample up to which variances of innovations are stationary.
-const SETTLED: f64 = 1e-13;
 
 impl Pass {
     /// Room for passes along a path; `kept` says whether covariances are wanted.
@@ -203,9 +202,9 @@ fn is_settled(
 pub(crate) enum At {
     /// Between a sample and the next, before the transition is undone.
     Between(usize),
-    /// Before an output is gone through, with its score along the variance of its noise.
+    /// An output has been gone through; its score along the variance of its noise.
     Output(usize, f64),
-    /// Before a sample, all its outputs gone through.
+    /// All outputs of a sample have been gone through.
     Sample(usize),
     /// At the start of a segment.
     Start,

@@ -17,9 +17,8 @@ impl Rows {
         Self { width, values: vec![[0.0; 4]; rows * width] }
     }
 
-    pub fn fill(&mut self, value: f64) {
-        debug_assert!(value == 0.0, "what is beyond the last column is 0");
-        self.values.fill([value; 4]);
+    pub fn clear(&mut self) {
+        self.values.fill([0.0; 4]);
     }
 
     #[inline(always)]
@@ -42,6 +41,16 @@ impl Rows {
     #[inline(always)]
     pub fn plain_mut(&mut self, i: usize) -> &mut [f64] {
         self.row_mut(i).as_flattened_mut()
+    }
+
+    /// The transpose of a square matrix.
+    #[inline(always)]
+    pub fn transpose(&mut self, of: &Self, n: usize) {
+        for i in 0..n {
+            for j in 0..n {
+                self.plain_mut(j)[i] = of.plain(i)[j];
+            }
+        }
     }
 
     /// The lower half as the upper.
@@ -69,9 +78,9 @@ impl Rows {
     }
 }
 
-/// Change from sample to sample, in units of the square roots of the diagonal, up to which a matrix is
-/// stationary.
-const SETTLED: f64 = 1e-13;
+/// Change from sample to sample up to which a matrix, in units of the square roots of its diagonal, or a
+/// variance, in units of itself, is stationary.
+pub(crate) const SETTLED: f64 = 1e-13;
 
 /// to += factor from
 #[inline(always)]

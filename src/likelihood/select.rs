@@ -198,11 +198,21 @@ impl Predictor {
     /// Forces of which none pushes as an earlier one does, and none does nothing or enters what is a
     /// definition.
     pub(crate) fn distinct(&self, path: &Path) -> Vec<usize> {
+        let (n, nf) = (path.n, path.forces);
         let mut kept: Vec<usize> = vec![];
         let plan = &self.model.plan;
-        for c in (0..path.forces).filter(|&c| c >= plan.sizes.w || plan.may_push(c)) {
-            let alike = |&other: &usize| path.is_parallel(c, other);
-            if path.push_product(c, c) > 0.0 && !kept.iter().any(alike) {
+        for c in (0..nf).filter(|&c| c >= plan.sizes.w || plan.may_push(c)) {
+            let dot = |a: usize, b: usize| {
+                path.g.chunks_exact(n * nf).fold(0.0, |sum, g| {
+                    sum + (0..n).map(|i| g[i * nf + a] * g[i * nf + b]).sum::<f64>()
+                })
+            };
+            let own = dot(c, c);
+            let alike = |&other: &usize| {
+                let both = dot(c, other);
+                both * both > (1.0 - 1e-9) * own * dot(other, other)
+            };
+            if own > 0.0 && !kept.iter().any(alike) {
                 kept.push(c);
             }
         }

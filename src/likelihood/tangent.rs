@@ -27,16 +27,6 @@ pub(crate) enum Site {
     Parameter(usize),
 }
 
-impl Site {
-    /// Whether two sites are one, or forces that push the same way along a path.
-    pub fn pushes_as(self, other: Self, path: &Path) -> bool {
-        match (self, other) {
-            (Self::Force(a), Self::Force(b)) => a == b || path.is_parallel(a, b),
-            _ => self == other,
-        }
-    }
-}
-
 /// Sums over all innovations: T' T and T' z.
 #[derive(Debug, Clone)]
 pub(crate) struct Gram {
