@@ -1,5 +1,6 @@
 //! Single samples that stand alone: outliers of the instrument, not of the machine.
 
+use crate::evidence::{Seen, VarianceFunction};
 use crate::fit::problem::Problem;
 use crate::statistics::median;
 
@@ -7,13 +8,19 @@ use crate::statistics::median;
 const BEYOND: f64 = 6.0;
 
 impl Problem<'_> {
-    /// Gives weight 0 to samples that lie far off and whose neighbours do not follow; what
-    /// was flagged before is judged anew.
+    /// Gives weight 0 to samples that lie far off, for the noise that is usual at what the model says
+    /// there, and whose neighbours do not follow; what was flagged before is judged anew.
     pub fn flag_spikes(&mut self, y: &[Vec<f64>]) {
+        let time: Vec<f64> = (0..self.len()).map(|k| k as f64).collect();
         for o in 0..self.y.len() {
             let known = self.known[o].clone();
             let off = |k: usize| if known[k] { self.y[o][k] - y[o][k] } else { 0.0 };
-            let r: Vec<f64> = (0..self.len()).map(off).collect();
+            let mut r: Vec<f64> = (0..self.len()).map(off).collect();
+            let seen = Seen { yhat: &y[o], time: &time, residual: &r, white: &r };
+            if let Some(variance) = VarianceFunction::of(seen) {
+                let at = y[o].iter().zip(&time);
+                r.iter_mut().zip(at).for_each(|(r, (y, t))| *r /= variance.deviation(*y, *t));
+            }
             for (k, spike) in spikes(&r, &known).into_iter().enumerate() {
                 self.weight[o][k] = f64::from(u8::from(known[k] && !spike));
             }

@@ -1,0 +1,106 @@
+//! Autoregressive noise of each output as a whitening filter: the deviations of the samples first, then
+//! the predictor, then the weights of the samples.
+//!
+//! W r = w[t] (u[t] - a_1 u[t-1] - ... - a_p u[t-p]) / s, u[t] = r[t] / sqrt(v[t]): `super::noise`,
+//! `super::variance` and `super::tails` have the parts and their sources.
+
+use std::ops::Range;
+
+use super::noise::Autoregressive;
+use super::stretches::Stretches;
+use super::tails::Tails;
+use super::variance::VarianceFunction;
+use super::whitener::Whitener;
+
+/// Autoregressive noise of every output, of normal or of t innovations and of one variance or one
+/// that follows the signal or time.
+#[derive(Debug, Clone)]
+pub(crate) struct Coloured {
+    pub(super) stretches: Stretches,
+    pub(super) noise: Vec<Autoregressive>,
+    pub(super) tails: Vec<Option<Tails>>,
+    pub(super) variances: Vec<Option<VarianceFunction>>,
+    /// Roots of the variances of the samples that it was estimated from; empty where all are 1.
+    pub(super) deviations: Vec<f64>,
+    /// Roots of the weights of the same samples; empty where all are 1.
+    pub(super) weights: Vec<f64>,
+}
+
+impl Coloured {
+    /// Takes these variance functions on, at what a model says that leaves `residual`.
+    pub(super) fn vary(&mut self, variances: Vec<Option<VarianceFunction>>, residual: &[f64]) {
+        let Stretches { measured, time, .. } = &self.stretches;
+        self.deviations = vec![];
+        if variances.iter().any(Option::is_some) {
+            let n = time.len();
+            let at = |(k, (y, r)): (usize, (&f64, &f64))| {
+                variances[k / n].map_or(1.0, |v| v.deviation(y - r, time[k % n]))
+            };
+            self.deviations = measured.iter().zip(residual).enumerate().map(at).collect();
+        }
+        self.variances = variances;
+    }
+
+    /// A series in units of the deviations.
+    pub(super) fn even(&self, series: &[f64]) -> Vec<f64> {
+        match self.deviations.is_empty() {
+            true => series.to_vec(),
+            false => series.iter().zip(&self.deviations).map(|(x, s)| x / s).collect(),
+        }
+    }
+
+    /// Sum over the samples of an output of the logarithms of their deviations.
+    pub(super) fn log_deviation(&self, o: usize) -> f64 {
+        let length = self.stretches.per_output.max(1);
+        let of = self.deviations.chunks(length).nth(o).unwrap_or_default();
+        let known = self.stretches.counts[o] / length as f64;
+        of.iter().map(|s| s.ln()).sum::<f64>() * known
+    }
+
+    fn each(
+        &self,
+        series: &[f64],
+        filter: impl Fn(&Autoregressive, &[f64], &[Range<usize>], &mut [f64]),
+    ) -> Vec<f64> {
+        let mut out = vec![0.0; series.len()];
+        let length = self.stretches.per_output.max(1);
+        for ((x, out), noise) in series.chunks(length).zip(out.chunks_mut(length)).zip(&self.noise)
+        {
+            filter(noise, x, &self.stretches.spans, out);
+        }
+        out
+    }
+}
+
+impl Whitener for Coloured {
+    fn whiten(&self, series: &[f64]) -> Vec<f64> {
+        let mut white = match self.deviations.is_empty() {
+            true => self.each(series, Autoregressive::whiten),
+            false => self.each(&self.even(series), Autoregressive::whiten),
+        };
+        white.iter_mut().zip(&self.weights).for_each(|(z, weight)| *z *= weight);
+        white
+    }
+
+    fn colour(&self, white: &[f64]) -> Vec<f64> {
+        let mut even = white.to_vec();
+        even.iter_mut().zip(&self.weights).for_each(|(z, weight)| *z /= weight);
+        let mut series = self.each(&even, Autoregressive::colour);
+        series.iter_mut().zip(&self.deviations).for_each(|(x, deviation)| *x *= deviation);
+        series
+    }
+
+    fn log_determinant(&self) -> f64 {
+        let parts = self.noise.iter().zip(&self.stretches.counts).enumerate();
+        let one = |(o, (noise, &count)): (usize, (&Autoregressive, &f64))| {
+            noise.log_determinant(&self.stretches.spans, count) + 2.0 * self.log_deviation(o)
+        };
+        parts.map(one).sum()
+    }
+
+    fn is_coloured(&self) -> bool {
+        self.noise.iter().any(|noise| noise.order() > 0)
+            || !self.weights.is_empty()
+            || !self.deviations.is_empty()
+    }
+}

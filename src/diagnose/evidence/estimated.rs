@@ -1,0 +1,173 @@
+//! The disturbance that suits a residual best: autoregressive noise per output over stretches of samples,
+//! of one variance or one that follows the signal or time, of normal or of t innovations; each is kept
+//! where it is the more probable, its own numbers paid for.
+
+use std::sync::Arc;
+
+use super::coloured::Coloured;
+use super::noise::Autoregressive;
+use super::stretches::Stretches;
+use super::tails::Tails;
+use super::variance::{Seen, VarianceFunction};
+use super::whitener::{Estimated, NoiseModel, Whitener};
+use crate::statistics::dot;
+
+impl Stretches {
+    fn filter(&self, noise: Vec<Autoregressive>) -> Coloured {
+        let none = vec![None; noise.len()];
+        Coloured {
+            stretches: self.clone(),
+            tails: vec![None; noise.len()],
+            noise,
+            variances: none,
+            deviations: vec![],
+            weights: vec![],
+        }
+    }
+
+    /// The same noise for another residual: its variances follow what the model says here.
+    fn following(&self, by: &Coloured, residual: &[f64]) -> Coloured {
+        let mut own = self.filter(by.noise.clone());
+        own.vary(by.variances.clone(), residual);
+        own
+    }
+
+    /// Logarithm of the density of a residual under a disturbance that was estimated elsewhere, but
+    /// for a constant.
+    pub fn log_density(&self, by: &Coloured, residual: &[f64]) -> f64 {
+        let own = self.following(by, residual);
+        let white = own.whiten(residual);
+        let normal = 0.5 * (2.0 * std::f64::consts::PI).ln();
+        let of = |(white, tails): (&[f64], &Option<Tails>)| -> f64 {
+            let one = |z: &f64| match tails {
+                None => -0.5 * z * z,
+                Some(tails) => tails.log_density(z * z) + normal,
+            };
+            white.iter().map(one).sum()
+        };
+        let densities = white.chunks(self.per_output.max(1)).zip(&by.tails).map(of);
+        densities.sum::<f64>() - 0.5 * own.log_determinant()
+    }
+
+    /// The normal disturbance of a residual, of one variance per output.
+    pub fn normal(&self, residual: &[f64]) -> Coloured {
+        let one = |(r, count): (&[f64], f64)| Autoregressive::estimate(r, &self.spans, count);
+        self.filter(self.per_output(residual).map(one).collect())
+    }
+
+    /// The normal disturbance whose variances follow signals or time; `None` where none does.
+    fn varying(&self, residual: &[f64], white: &[f64]) -> Option<Coloured> {
+        let length = self.per_output.max(1);
+        let yhat: Vec<f64> = self.measured.iter().zip(residual).map(|(y, r)| y - r).collect();
+        let parts = yhat.chunks(length).zip(residual.chunks(length)).zip(white.chunks(length));
+        let of = |((yhat, residual), white)| {
+            VarianceFunction::of(Seen { yhat, time: &self.time, residual, white })
+        };
+        let variances: Vec<_> = parts.map(of).collect();
+        if variances.iter().all(Option::is_none) {
+            return None;
+        }
+        let mut of = self.filter(vec![]);
+        of.vary(variances, residual);
+        let even = of.even(residual);
+        of.noise = self.normal(&even).noise;
+        of.tails = vec![None; of.noise.len()];
+        Some(of)
+    }
+
+    /// Logarithm of the likelihood of every output at the variance that suits it best, and what
+    /// its past does not foretell.
+    fn likelihoods(&self, of: &Coloured, residual: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let white = of.whiten(residual);
+        let parts = self.per_output(&white).zip(&of.noise).enumerate();
+        let one = |(o, ((w, count), noise)): (usize, ((&[f64], f64), &Autoregressive))| {
+            let spent = if of.variances[o].is_some() { 0.5 * count.max(1.0).ln() } else { 0.0 };
+            noise.log_likelihood(w, &self.spans, count) - of.log_deviation(o) - spent
+        };
+        (parts.map(one).collect(), white)
+    }
+
+    /// The disturbance of a residual by its own type, and the logarithm of its likelihood, its own
+    /// numbers paid for.
+    pub fn coloured(&self, residual: &[f64]) -> (Coloured, f64) {
+        let even = self.normal(residual);
+        let (likelihoods, white) = self.likelihoods(&even, residual);
+        let varying = self.varying(residual, &white);
+        let even = self.with_tails(even, &likelihoods, &white, residual);
+        let other = varying.map(|of| {
+            let (likelihoods, white) = self.likelihoods(&of, residual);
+            self.with_tails(of, &likelihoods, &white, residual)
+        });
+        match other {
+            Some(other) if other.1 > even.1 => other,
+            _ => even,
+        }
+    }
+
+    /// The same with the tails of what it leaves, and the logarithm of its likelihood.
+    fn with_tails(
+        &self,
+        mut of: Coloured,
+        likelihoods: &[f64],
+        white: &[f64],
+        residual: &[f64],
+    ) -> (Coloured, f64) {
+        let length = self.per_output.max(1);
+        let both = white.chunks(length).zip(residual.chunks(length));
+        let tails: Vec<_> = both.map(|(white, r)| Tails::of(white, r)).collect();
+        let gain: f64 = tails.iter().flatten().map(|(_, gain)| gain).sum();
+        of.tails = tails.into_iter().map(|tails| Some(tails?.0)).collect();
+        if of.tails.iter().any(Option::is_some) {
+            let weigh = |(white, tails): (&[f64], &Option<Tails>)| -> Vec<f64> {
+                let one = |z: &f64| tails.as_ref().map_or(1.0, |t| t.weight(z * z).sqrt());
+                white.iter().map(one).collect()
+            };
+            of.weights = white.chunks(length).zip(&of.tails).flat_map(weigh).collect();
+        }
+        (of, likelihoods.iter().sum::<f64>() + gain)
+    }
+}
+
+impl NoiseModel for Stretches {
+    fn estimate(&self, residual: &[f64]) -> Estimated {
+        let (found, log_likelihood) = self.coloured(residual);
+        Estimated { whitener: Arc::new(found), log_likelihood }
+    }
+
+    fn white(&self, residual: &[f64]) -> Arc<dyn Whitener> {
+        let one = |(r, count): (&[f64], f64)| Autoregressive::white(dot(r, r) / count.max(1.0));
+        Arc::new(self.filter(self.per_output(residual).map(one).collect()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::Random;
+
+    #[test]
+    fn a_filter_and_its_inverse() {
+        let mut random = Random::new(4);
+        let mut r = vec![0.0; 900];
+        for t in 1..900 {
+            r[t] = 0.9 * r[t - 1] + random.normal();
+        }
+        let stretches = Stretches::of_lengths(&[500, 400]);
+        let found = stretches.estimate(&r);
+        assert!(found.whitener.is_coloured());
+        let white = found.whitener.whiten(&r);
+        let back = found.whitener.colour(&white);
+        assert!(back.iter().zip(&r).all(|(a, b)| (a - b).abs() < 1e-9));
+        // at the variance that suits it best, the density is the likelihood but for what is constant
+        // and for what the coefficients take
+        let density = stretches.log_density(&stretches.coloured(&r).0, &r);
+        let rest = found.log_likelihood - density;
+        let spent = 0.5 * 900f64.ln() * found_order(&stretches, &r) as f64;
+        assert!((rest - (450.0 - spent)).abs() < 2.0, "{rest} {spent}");
+        assert!(!stretches.white(&r).is_coloured());
+    }
+
+    fn found_order(stretches: &Stretches, r: &[f64]) -> usize {
+        stretches.normal(r).noise[0].order()
+    }
+}
