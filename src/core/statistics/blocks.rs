@@ -196,19 +196,6 @@ fn robust(ff: &[f64], fr: &[f64], count: Option<usize>) -> Option<(f64, f64, f64
     Some((weight, error / total, informative as f64 - 1.0))
 }
 
-/// Ljung-Box statistic on 20 lags as a normal score: how far from white.
-pub fn whiteness(x: &[f64]) -> f64 {
-    let n = x.len() as f64;
-    let lags = 20;
-    if x.len() <= lags + 1 {
-        return 0.0;
-    }
-    let r = autocorrelation(x, lags + 1);
-    let sum: f64 = r.iter().enumerate().skip(1).map(|(k, r)| r * r / (n - k as f64)).sum();
-    let degrees = lags as f64;
-    (n * (n + 2.0) * sum - degrees) / (2.0 * degrees).sqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -265,13 +252,5 @@ mod tests {
             beyond += usize::from(wald(&ff, &fr).abs() > 3.0);
         }
         assert!(beyond <= 1, "{beyond} of 40 beyond 3");
-    }
-
-    #[test]
-    fn white_noise_is_white_and_red_is_not() {
-        let white = noise(4000, 5);
-        assert!(whiteness(&white).abs() < 4.0);
-        let smooth: Vec<f64> = white.windows(3).map(|w| w[0] + w[1] + w[2]).collect();
-        assert!(whiteness(&smooth) > 30.0);
     }
 }

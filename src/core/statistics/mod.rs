@@ -12,12 +12,13 @@ mod score_test;
 mod spectrum;
 #[cfg(test)]
 pub(crate) mod test_noise;
+mod whiteness;
 
 pub use averaged::Averaged;
 pub use basis::{add_to_basis, project};
 pub use blocks::{
     autocorrelation, block_sums, blocks, corrected_score, deviation, dot, mean, median, mixture,
-    normal_tail, odds, rms, spread, wald, weight, whiteness,
+    normal_tail, odds, rms, spread, wald, weight,
 };
 pub use gross::gross;
 pub use levinson::{Predictor, levinson};
@@ -25,3 +26,4 @@ pub use lines::lines;
 pub use sandwich::covariance;
 pub use score_test::{Dependence, Regression};
 pub use spectrum::{pieces, power, strongest};
+pub use whiteness::whiteness;

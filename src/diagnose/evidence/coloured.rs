@@ -34,11 +34,16 @@ impl Coloured {
         if variances.iter().any(Option::is_some) {
             let n = time.len();
             let at = |(k, (y, r)): (usize, (&f64, &f64))| {
-                variances[k / n].map_or(1.0, |v| v.deviation(y - r, time[k % n]))
+                variances[k / n].as_ref().map_or(1.0, |v| v.deviation(y - r, time[k % n]))
             };
             self.deviations = measured.iter().zip(residual).enumerate().map(at).collect();
         }
         self.variances = variances;
+    }
+
+    /// What a value of a sample adds to what is not foretold of it.
+    pub fn own_part(&self, o: usize, value: f64) -> f64 {
+        value / self.noise[o].deviation()
     }
 
     /// A series in units of the deviations.

@@ -81,7 +81,7 @@ impl Stretches {
         let white = of.whiten(residual);
         let parts = self.per_output(&white).zip(&of.noise).enumerate();
         let one = |(o, ((w, count), noise)): (usize, ((&[f64], f64), &Autoregressive))| {
-            let spent = if of.variances[o].is_some() { 0.5 * count.max(1.0).ln() } else { 0.0 };
+            let spent = if of.variances[o].is_some() { count.max(1.0).ln() } else { 0.0 };
             noise.log_likelihood(w, &self.spans, count) - of.log_deviation(o) - spent
         };
         (parts.map(one).collect(), white)

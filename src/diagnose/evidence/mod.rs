@@ -1,9 +1,9 @@
 //! How probable a model is, given the data.
 //!
 //! ln p(M | y) = ln p(y | theta, M) - 1/2 ln det(I + W J'J W) + ln p(theta) + ln p(M) + constant:
-//! the likelihood at the fitted numbers theta with the disturbance as a nuisance (`noise`,
-//! `tails`, `variance`, `whitener`), the Occam factor of Laplace's approximation (`laplace`; MacKay, Neural Computation 4,
-//! 1992) and the prior of the structure (`prior`).
+//! the likelihood at the fitted numbers theta with the disturbance as a nuisance (`noise`, `tails`,
+//! `variance`, `whitener`), the Occam factor of Laplace's approximation (`laplace`; MacKay, Neural
+//! Computation 4, 1992) and the prior of the structure (`prior`).
 
 mod coloured;
 mod estimated;
@@ -18,5 +18,6 @@ mod whitener;
 pub(crate) use laplace::occam;
 pub(crate) use prior::{Choices, price, width};
 pub(crate) use stretches::Stretches;
+pub(crate) use tails::Tails;
 pub(crate) use variance::{Seen, VarianceFunction};
 pub(crate) use whitener::{NoiseModel, Whitener};

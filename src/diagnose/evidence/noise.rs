@@ -54,6 +54,11 @@ impl Autoregressive {
         self.predictors.len() - 1
     }
 
+    /// Standard deviation of what the whole past does not foretell.
+    pub fn deviation(&self) -> f64 {
+        self.variances[self.order()].sqrt()
+    }
+
     /// What the past does not foretell, in units of its standard deviation.
     pub fn whiten(&self, r: &[f64], stretches: &[Range<usize>], out: &mut [f64]) {
         let order = self.order();

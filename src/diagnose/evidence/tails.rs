@@ -16,6 +16,8 @@ const FREEDOM: [f64; 6] = [2.0, 3.0, 4.0, 6.0, 10.0, 20.0];
 /// Steps of expectation and maximisation for a scale, at most, and the change at which they end.
 const STEPS: usize = 20;
 const SETTLED: f64 = 1e-3;
+/// Steps for a contaminated normal density, at most.
+const GROSS_STEPS: usize = 100;
 
 /// A t density.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -53,6 +55,19 @@ impl Tails {
         (gain > 0.0).then_some((best.0, gain))
     }
 
+    /// Degrees of freedom of samples that are more probably of one t density than normal ones among
+    /// gross errors, of any size up to the largest: a contaminated normal density
+    /// (1 - q) N(0, s^2) + q U(-max, max) (Box and Tiao, Biometrika 55, 1968), of two numbers as well.
+    pub fn rather_than_gross_errors(samples: &[f64]) -> Option<f64> {
+        let (tails, gain) = Self::of(samples, samples)?;
+        let squares: Vec<f64> = samples.iter().map(|z| z * z).filter(|q| *q > 0.0).collect();
+        let n = squares.len() as f64;
+        let variance = squares.iter().sum::<f64>() / n;
+        let normal = -0.5 * n * ((2.0 * std::f64::consts::PI * variance).ln() + 1.0);
+        let of_t = gain + normal + 0.5 * n.ln();
+        (of_t > contaminated(&squares)).then_some(tails.freedom)
+    }
+
     /// The most probable scale at given degrees of freedom.
     fn with(freedom: f64, squares: &[f64], variance: f64) -> Self {
         let mut of = Self { freedom, scale: (0.5 * variance).sqrt() };
@@ -84,6 +99,38 @@ impl Tails {
     }
 }
 
+/// Logarithm of the likelihood of the most probable contaminated normal density of squares.
+fn contaminated(squares: &[f64]) -> f64 {
+    let largest = squares.iter().copied().fold(0.0, f64::max).sqrt();
+    let uniform = 0.5 / largest;
+    let n = squares.len() as f64;
+    let mut sorted = squares.to_vec();
+    let half = sorted.len() / 2;
+    // the median of a normal density's squares is 0.4549 of its variance
+    let mut variance = *sorted.select_nth_unstable_by(half, f64::total_cmp).1 / 0.4549;
+    let mut share: f64 = 0.01;
+    let mut likelihood = f64::NEG_INFINITY;
+    for _ in 0..GROSS_STEPS {
+        let (mut sum, mut normals, mut weighted) = (0.0, 0.0, 0.0);
+        let factor = (1.0 - share) / (2.0 * std::f64::consts::PI * variance).sqrt();
+        for q in squares {
+            let normal = factor * (-0.5 * q / variance).exp();
+            let density = normal + share * uniform;
+            sum += density.ln();
+            normals += normal / density;
+            weighted += normal / density * q;
+        }
+        variance = weighted / normals;
+        share = 1.0 - normals / n;
+        let gain = sum - likelihood;
+        likelihood = sum;
+        if gain < SETTLED {
+            break;
+        }
+    }
+    likelihood
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,6 +159,25 @@ mod tests {
         // the most probable scale makes the weighted squares as many as there are samples
         let sum: f64 = z.iter().map(|z| tails.weight(z * z) * z * z).sum();
         assert!((sum / 3000.0 - 1.0).abs() < 2e-3, "{sum}");
+    }
+
+    #[test]
+    fn gross_errors_are_no_tails_and_tails_no_gross_errors() {
+        for seed in 0..20 {
+            let mut random = Random::new(seed);
+            let mut normal: Vec<f64> = (0..4000).map(|_| random.normal()).collect();
+            for k in 0..20 {
+                normal[200 * k] += if k % 2 == 0 { 12.0 } else { -9.0 };
+            }
+            assert_eq!(Tails::rather_than_gross_errors(&normal), None);
+            let mut t = || {
+                let square: f64 = (0..4).map(|_| random.normal().powi(2)).sum();
+                random.normal() / (square / 4.0).sqrt()
+            };
+            let tails: Vec<f64> = (0..4000).map(|_| t()).collect();
+            let freedom = Tails::rather_than_gross_errors(&tails);
+            assert!(freedom.is_some_and(|f| (3.0..=6.0).contains(&f)), "{freedom:?}");
+        }
     }
 
     #[test]

@@ -163,8 +163,11 @@ impl Context<'_, '_> {
     ) -> Vec<Cause> {
         let mut causes = vec![];
         for (o, rows) in chosen.found.spikes.iter().enumerate() {
-            let changes = levels.get(o).is_some_and(Option::is_some);
-            let far = changes.then(|| self.far_from_near(chosen, o, rows));
+            let far = match levels.get(o) {
+                Some(Some(Note::HeavyTails { .. })) => continue,
+                Some(Some(_)) => Some(self.far_from_near(chosen, o, rows)),
+                _ => None,
+            };
             let rows = far.as_ref().unwrap_or(rows);
             let share = rows.len() as f64 / self.problem.len().max(1) as f64;
             if rows.len() < SPIKES || share <= SPIKE_SHARE {

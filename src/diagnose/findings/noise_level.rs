@@ -5,9 +5,9 @@
 //! dynamic regression on time and on the sizes of outputs and inputs (Glejser, Journal of the American
 //! Statistical Association 64, 1969), and its own memory to the test of Ljung and Box, as Engle does
 //! with e^2 (Econometrica 50, 1982). Samples far beyond the usual level are then no outliers, unless
-//! they lie as far beyond those near them.
+//! they lie as far beyond those near them; nor where all of e is of one density with heavy tails.
 
-use crate::evidence::{Stretches, Whitener};
+use crate::evidence::{Stretches, Tails, Whitener};
 use crate::findings::context::Context;
 use crate::findings::note::{Follows, Note};
 use crate::fit::finished::Finished;
@@ -35,9 +35,25 @@ impl Context<'_, '_> {
     /// The noise of every output as far as its level changes.
     pub fn noise_levels(&self, chosen: &Finished) -> Vec<Option<Note>> {
         let residual = self.problem.residual(&chosen.y, Part::All);
-        let white = Stretches::new(self.problem, Part::All).normal(&residual).whiten(&residual);
+        let noise = Stretches::new(self.problem, Part::All).normal(&residual);
+        let white = noise.whiten(&residual);
         let samples: Vec<usize> = self.problem.samples(Part::All).collect();
-        let of = |(o, e): (usize, &[f64])| self.noise_level(chosen, o, e, &samples);
+        let of = |(o, e): (usize, &[f64])| {
+            let level = self.noise_level(chosen, o, e, &samples);
+            level.or_else(|| {
+                let mut e = e.to_vec();
+                for (e, &k) in e.iter_mut().zip(&samples) {
+                    if self.problem.known[o][k] && self.problem.weight[o][k] == 0.0 {
+                        let off = (self.problem.y[o][k] - chosen.y[o][k]) / self.problem.scale[o];
+                        *e += noise.own_part(o, off);
+                    }
+                }
+                let freedom = Tails::rather_than_gross_errors(&e)?;
+                let output = self.problem.base.signals.outputs[o].name.clone();
+                let left_out = chosen.found.spikes.get(o).map_or(0, Vec::len);
+                Some(Note::HeavyTails { output, freedom, left_out })
+            })
+        };
         white.chunks(samples.len().max(1)).enumerate().map(of).collect()
     }
 

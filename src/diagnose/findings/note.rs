@@ -132,6 +132,15 @@ pub enum Note {
         /// Samples without weight, far beyond the usual level.
         left_out: usize,
     },
+    /// The noise of an output has heavy tails.
+    HeavyTails {
+        /// The output.
+        output: String,
+        /// Degrees of freedom of Student's t density.
+        freedom: f64,
+        /// Samples without weight, far beyond the usual level.
+        left_out: usize,
+    },
     /// Parameters of which the record tells less than all: what they can do together unseen, in words.
     Undetermined {
         /// `changing b by +1.00 x, c by -1.00 x together changes nothing that was measured`.

@@ -114,11 +114,7 @@ pub fn note(note: &Note) -> String {
                 Follows::Signal(name) => format!("with {name}"),
                 Follows::Itself => "in bursts".into(),
             };
-            let weight = match left_out {
-                0 => String::new(),
-                1 => " One sample far beyond the usual level was given no weight.".into(),
-                n => format!(" {n} samples far beyond the usual level were given no weight."),
-            };
+            let weight = without_weight(*left_out);
             format!(
                 "The noise of {output} changes its level {how}, between {} and {} rms: these are no \
                  outliers, and the errors allow for it.{weight}",
@@ -126,6 +122,11 @@ pub fn note(note: &Note) -> String {
                 short(*high, unit)
             )
         }
+        Note::HeavyTails { output, freedom, left_out } => format!(
+            "The noise of {output} has heavy tails (Student's t with about {freedom} degrees of freedom): \
+             single samples far off are part of it and no outliers, and the errors allow for it.{}",
+            without_weight(*left_out)
+        ),
         Note::Undetermined { parameters } => format!(
             "The record cannot tell which parameter is wrong: {parameters}. What is named stands for all of \
              them, and has no error of its own; hold with --fix those that you are sure of."
@@ -142,6 +143,15 @@ pub fn note(note: &Note) -> String {
              not fitted.",
             percent(*share)
         ),
+    }
+}
+
+/// What is said of samples that were left out.
+fn without_weight(samples: usize) -> String {
+    match samples {
+        0 => String::new(),
+        1 => " One sample far beyond the usual level was given no weight.".into(),
+        n => format!(" {n} samples far beyond the usual level were given no weight."),
     }
 }
 
