@@ -1,5 +1,6 @@
 //! One supposed cause: an effect at a place, with what is free in it.
 
+use crate::candidates::stiffness::Stiffness;
 use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, ShapeOf};
 use crate::system::{AlsoInto, Placed, Route};
 
@@ -62,7 +63,7 @@ pub(crate) struct Candidate {
     /// First probe size of the coefficient.
     pub probe: f64,
     /// Rate at which w changes the coordinate: how stiff a steep friction law is.
-    pub stiffness: f64,
+    pub stiffness: Stiffness,
     /// Rate at which the channel changes the coordinate, D; 0 where it is not known.
     pub push: f64,
     pub named: Named,
@@ -158,8 +159,8 @@ impl Candidate {
     }
 
     /// Parameters within their ranges, the sign kept, and friction no steeper than `step` (s)
-    /// lets the integrator follow.
-    pub fn clipped(&self, parameters: &[f64], step: f64) -> Vec<f64> {
+    /// lets the integrator follow in a model of these parameter values.
+    pub fn clipped(&self, parameters: &[f64], step: f64, theta: &[f64]) -> Vec<f64> {
         let mut clipped = parameters.to_vec();
         for &i in &self.refine {
             if clipped[i].is_finite() {
@@ -172,9 +173,9 @@ impl Candidate {
             clipped[first] = 0.0;
         }
         let width = self.card.position(self.card.properties.smoothing_width);
-        if let (Some(width), true) = (width, self.stiffness > 0.0) {
+        if let Some(width) = width {
             let level: f64 = self.linear.iter().map(|&i| clipped[i].abs()).sum();
-            clipped[width] = clipped[width].max(0.5 * level * self.stiffness * step);
+            clipped[width] = clipped[width].max(0.5 * level * self.stiffness.at(theta) * step);
         }
         clipped
     }

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::candidates::candidate::{Candidate, Preference, Wire};
+use crate::candidates::stiffness::Stiffness;
 use crate::effect::{
     CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, Shape, SignRule, View, curve,
 };
@@ -153,6 +154,12 @@ impl Builder<'_, '_> {
         let source = spot.source.unwrap_or(time);
         let view = self.nominal.view(source, source == time, spot.own_path, &self.lines);
         let search = shape.search(&view);
+        let stiffness = match card.needs == Needs::Velocity && push != 0.0 {
+            true => Stiffness::new(push, self.nominal.theta(), |theta| {
+                self.nominal.push_at(self.problem, spot.target, source, theta)
+            }),
+            false => Stiffness::default(),
+        };
         let fixed = |parameter: &str| {
             let own = card.own_path.iter().find(|(name, _)| *name == parameter);
             own.filter(|_| spot.own_path).map(|(_, value)| *value)
@@ -232,7 +239,7 @@ impl Builder<'_, '_> {
                 sign,
                 probe,
                 push,
-                stiffness: if card.needs == Needs::Velocity { push.abs() } else { 0.0 },
+                stiffness: stiffness.clone(),
                 named: Named {
                     bare: self.is_bare(spot.source),
                     own_path: spot.own_path,

@@ -13,4 +13,5 @@ pub(crate) mod probes;
 pub(crate) mod products;
 pub(crate) mod screen;
 pub(crate) mod smoothing;
+pub(crate) mod stiffness;
 pub(crate) mod sums;

@@ -2,6 +2,7 @@
 
 use crate::candidates::candidate::{Candidate, Preference, Wire};
 use crate::candidates::library::{Builder, Spot};
+use crate::candidates::stiffness::Stiffness;
 use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Needs};
 use crate::fit::problem::Model;
 use crate::system::{AlsoInto, Origin};
@@ -53,7 +54,7 @@ impl Builder<'_, '_> {
                 thresholds: false,
                 sign: 0.0,
                 probe: if changes { 0.01 * scale } else { 0.02 * scale / duration },
-                stiffness: 0.0,
+                stiffness: Stiffness::default(),
                 push: 0.0,
                 named: Named::default(),
                 units: (parameter.unit.clone(), "s".into()),

@@ -73,7 +73,8 @@ impl Sharing<'_, '_> {
                 cause.clone()
             }
         };
-        let clipped = cause.clipped(parameters, self.problem.step(self.grain));
+        let clipped =
+            cause.clipped(parameters, self.problem.step(self.grain), &self.model.parameters());
         // the first one's sign rule must not clip this one's parameters
         let mut job =
             with_candidate(self.problem, self.model, &first, &first.starts[0], blend, self.grain)?;

@@ -25,8 +25,9 @@ impl Model {
     /// (s), which bounds how steep a law may be.
     pub fn sum(&self, own: &[usize], step: f64, z: &[f64]) -> Vec<f64> {
         let mut sum = vec![0.0; z.len()];
+        let theta = self.parameters();
         for added in own.iter().map(|&i| &self.added[i]) {
-            let parameters = added.cause.clipped(&added.parameters, step);
+            let parameters = added.cause.clipped(&added.parameters, step, &theta);
             let law = curve(added.cause.shape.as_ref(), &parameters, z);
             sum.iter_mut().zip(law).for_each(|(sum, law)| *sum += law);
         }

@@ -48,9 +48,10 @@ impl Context<'_, '_> {
                         *e += noise.own_part(o, off);
                     }
                 }
-                let freedom = Tails::rather_than_gross_errors(&e)?;
-                let output = self.problem.base.signals.outputs[o].name.clone();
                 let left_out = chosen.found.spikes.get(o).map_or(0, Vec::len);
+                // a remark on why samples that were left out are no outliers
+                let freedom = (left_out > 0).then(|| Tails::rather_than_gross_errors(&e))??;
+                let output = self.problem.base.signals.outputs[o].name.clone();
                 Some(Note::HeavyTails { output, freedom, left_out })
             })
         };

@@ -19,7 +19,9 @@ impl Context<'_, '_> {
     pub fn values(&self, chosen: &Finished, index: usize) -> Vec<Value> {
         let added = &chosen.fitted.model.added[index];
         let cause = &added.cause;
-        let parameters = cause.clipped(&added.parameters, self.problem.step(Grain::Fine));
+        let theta = chosen.fitted.model.parameters();
+        let step = self.problem.step(Grain::Fine);
+        let parameters = cause.clipped(&added.parameters, step, &theta);
         let errors = profile_likelihood::errors(self.problem, chosen, index);
         let error = |i: usize| errors[i];
         if let Wire::Parameter(p) = cause.wire {

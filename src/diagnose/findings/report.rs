@@ -168,11 +168,11 @@ impl Context<'_, '_> {
     pub fn extend(&self, model: &Model) -> Result<System, DiagnoseError> {
         let system = self.system;
         let signals = &self.problem.base.signals;
-        let mut theta = model.theta.clone();
+        let (mut theta, moved) = (model.theta.clone(), model.parameters());
         let mut extended = system.clone();
         let step = self.problem.step(Grain::Fine);
         for added in &model.added {
-            let parameters = added.cause.clipped(&added.parameters, step);
+            let parameters = added.cause.clipped(&added.parameters, step, &moved);
             match added.cause.wire {
                 Wire::Parameter(p) => theta[p] += parameters[0],
                 _ => extended.effects.extend(added.cause.placed(&parameters)),

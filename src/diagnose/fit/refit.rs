@@ -96,8 +96,9 @@ fn once(
         for (&key, &value) in keys.iter().zip(point) {
             set(&mut model, key, value);
         }
+        let (theta, step) = (model.parameters(), problem.step(how.grain));
         for added in &mut model.added {
-            added.parameters = added.cause.clipped(&added.parameters, problem.step(how.grain));
+            added.parameters = added.cause.clipped(&added.parameters, step, &theta);
         }
         model
     };

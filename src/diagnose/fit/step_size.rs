@@ -47,14 +47,15 @@ impl Problem<'_> {
         }
         let (fine, coarse) = (self.step(Grain::Fine), self.step(Grain::Coarse));
         let blunt = |model: &&Model| {
+            let theta = model.parameters();
             model.added.iter().any(|added| {
                 let mut steep = added.parameters.clone();
                 let card = &added.cause.card;
                 if let Some(width) = card.position(card.properties.smoothing_width) {
                     steep[width] *= 0.9;
                 }
-                let as_fine = added.cause.clipped(&steep, fine);
-                as_fine != added.cause.clipped(&steep, coarse)
+                let as_fine = added.cause.clipped(&steep, fine, &theta);
+                as_fine != added.cause.clipped(&steep, coarse, &theta)
             })
         };
         let far = |(own, coarse): (Simulated, Simulated)| {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::candidates::candidate::Candidate;
+use crate::candidates::candidate::{Candidate, Wire};
 
 /// A cause that is part of a model, with its parameters.
 #[derive(Debug, Clone)]
@@ -25,6 +25,17 @@ impl Model {
         let mut model = self.clone();
         model.added.push(Added { cause: cause.clone(), parameters });
         model
+    }
+
+    /// Values of its parameters, what its causes move them by included.
+    pub fn parameters(&self) -> Vec<f64> {
+        let mut theta = self.theta.clone();
+        for added in &self.added {
+            if let Wire::Parameter(p) = added.cause.wire {
+                theta[p] += added.parameters[0];
+            }
+        }
+        theta
     }
 
     /// How many of its causes, the first ones, were known before any search: limits of the

@@ -67,22 +67,9 @@ impl Nominal {
                 }
             })
             .collect();
-        let law = problem.system.model.as_ref();
-        let unit = crate::model::probe::unit;
-        let mut columns: Vec<Vec<f64>> = vec![];
-        for (_, origin) in &base.targets.entries {
-            let column = |point: &Point| match *origin {
-                Origin::Own(i) if base.declared_channels => {
-                    slope(law, n, Ask::Derivative, point, Along::Channel(&unit(n.w, i)))
-                }
-                Origin::Own(i) => unit(n.x, i),
-                Origin::Input(i) => {
-                    slope(law, n, Ask::Derivative, point, Along::Input(&unit(n.u, i)))
-                }
-                _ => vec![0.0; n.x],
-            };
-            columns.push(points.iter().flat_map(column).collect::<Vec<f64>>());
-        }
+        let along =
+            |target| points.iter().flat_map(|point| column(problem, target, point)).collect();
+        let columns: Vec<Vec<f64>> = (0..base.targets.entries.len()).map(along).collect();
         let dt = base.sampling_time;
         let moves: Vec<f64> = states.iter().map(|s| rms(&gradient(s, dt)).max(1e-300)).collect();
         let mut natural = vec![];
@@ -137,15 +124,26 @@ impl Nominal {
     /// D: the rate at which one unit into target `target` changes source `source`, per s;
     /// 0 where there is no immediate way, `None` where it changes sign.
     pub fn push(&self, problem: &Problem<'_>, target: usize, source: usize) -> Option<f64> {
+        self.push_at(problem, target, source, self.theta())
+    }
+
+    /// The same of a model of these parameter values, along the same record.
+    pub fn push_at(
+        &self,
+        problem: &Problem<'_>,
+        target: usize,
+        source: usize,
+        theta: &[f64],
+    ) -> Option<f64> {
         let law = problem.system.model.as_ref();
         let n = self.sizes;
         let base = &problem.base;
         let values: Vec<f64> = self
             .points
             .iter()
-            .enumerate()
-            .map(|(p, point)| {
-                let column = &self.columns[target][p * n.x..][..n.x];
+            .map(|point| {
+                let point = &Point { theta: theta.to_vec(), ..point.clone() };
+                let column = &column(problem, target, point);
                 match base.sources.entries[source].1 {
                     Origin::State(i) => column[i],
                     Origin::Own(i) if !base.declared_coordinates => column[i],
@@ -162,6 +160,11 @@ impl Nominal {
             return Some(0.0);
         }
         values.iter().all(|v| v * typical >= 0.0).then_some(typical)
+    }
+
+    /// Parameter values of the baseline.
+    pub fn theta(&self) -> &[f64] {
+        self.points.first().map_or(&[], |point| &point.theta)
     }
 
     /// Whether an input reaches an output without a state in between.
@@ -189,6 +192,21 @@ impl Nominal {
     /// The known part of a source.
     pub fn series(&self, source: usize) -> &[f64] {
         &self.seen[source][..self.count]
+    }
+}
+
+/// Change of the derivatives by one unit into a target, at a point.
+fn column(problem: &Problem<'_>, target: usize, point: &Point) -> Vec<f64> {
+    let (law, base) = (problem.system.model.as_ref(), &problem.base);
+    let n = base.sizes;
+    let unit = crate::model::probe::unit;
+    match base.targets.entries[target].1 {
+        Origin::Own(i) if base.declared_channels => {
+            slope(law, n, Ask::Derivative, point, Along::Channel(&unit(n.w, i)))
+        }
+        Origin::Own(i) => unit(n.x, i),
+        Origin::Input(i) => slope(law, n, Ask::Derivative, point, Along::Input(&unit(n.u, i))),
+        _ => vec![0.0; n.x],
     }
 }
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::beam::Fit;
 use crate::candidates::candidate::{Candidate, Preference, Wire};
+use crate::candidates::stiffness::Stiffness;
 use crate::effect::Named;
 use crate::evidence::{NoiseModel, Stretches};
 use crate::fit::problem::Model;
@@ -35,7 +36,7 @@ pub(crate) fn candidate(into: &str) -> Candidate {
         thresholds: false,
         sign: 0.0,
         probe: 1e-3,
-        stiffness: 0.0,
+        stiffness: Stiffness::default(),
         push: 0.0,
         named: Named { quantity: None, own_path: false, bare: false },
         units: (String::new(), String::new()),
