@@ -9,6 +9,7 @@ mod first_use;
 mod hard_plants;
 mod hidden_effect;
 mod network;
+mod noise_levels;
 mod nulls;
 mod other_plants;
 mod plan;
