@@ -55,7 +55,9 @@ impl Rivals {
     pub fn of(predictor: &Predictor) -> Self {
         let (outside, inside) =
             rayon::join(|| predictor.fit_free_run().ok(), || predictor.fit_noise().ok());
-        Self { outside, inside }
+        // a run that leaves the finite numbers is none
+        let finite = |of: &Fitted| of.criterion().is_finite();
+        Self { outside: outside.filter(finite), inside: inside.filter(finite) }
     }
 
     /// Whether noise inside the plant is clearly more probable, or cannot be asked for beside this
