@@ -104,8 +104,10 @@ impl Whitener for Coloured {
     }
 
     fn is_coloured(&self) -> bool {
+        self.remembers() || !self.weights.is_empty() || !self.deviations.is_empty()
+    }
+
+    fn remembers(&self) -> bool {
         self.noise.iter().any(|noise| noise.order() > 0)
-            || !self.weights.is_empty()
-            || !self.deviations.is_empty()
     }
 }

@@ -22,6 +22,9 @@ pub(crate) trait Whitener: Send + Sync + std::fmt::Debug {
 
     /// Whether it is more than a scale per output.
     fn is_coloured(&self) -> bool;
+
+    /// Whether a sample says something of the next.
+    fn remembers(&self) -> bool;
 }
 
 /// The disturbance that suits a residual best.

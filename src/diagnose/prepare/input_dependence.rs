@@ -1,7 +1,6 @@
 //! Whether what a model leaves depends on the inputs: what noise, coloured or not, never does.
 
-use crate::evidence::{Stretches, Whitener};
-use crate::fit::problem::{Part, Problem};
+use crate::fit::problem::Problem;
 use crate::prepare::operating_range::Nominal;
 
 /// Score above which what is left is not noise.
@@ -12,14 +11,4 @@ pub(crate) const DEPENDS: f64 = 3.0;
 pub(crate) fn dependence(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>]) -> f64 {
     let Some(features) = nominal.features(problem) else { return 0.0 };
     (0..problem.y.len()).map(|o| features.predict(problem, y, o)).fold(0.0, f64::max)
-}
-
-/// The same of what the disturbance that suits the residual best does not foretell.
-pub(crate) fn dependence_in_noise(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>]) -> f64 {
-    let Some(features) = nominal.features(problem) else { return 0.0 };
-    let residual = problem.residual(y, Part::All);
-    let white = Stretches::new(problem, Part::All).coloured(&residual).0.whiten(&residual);
-    let samples: Vec<usize> = problem.samples(Part::All).collect();
-    let outputs = white.chunks(samples.len().max(1));
-    outputs.map(|white| features.predict_white(&samples, white)).fold(0.0, f64::max)
 }

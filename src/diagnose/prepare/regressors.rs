@@ -61,30 +61,12 @@ impl Features {
         Some(Self { from, end, fitted, held, reach, factors })
     }
 
-    /// Score that what an autoregressive model does not foretell of an output's residual is predicted:
-    /// in coloured noise the regression of the residual itself says less (Aitken 1935). `white`
-    /// has a value for each of `samples`; of others nothing is known.
-    pub(crate) fn predict_white(&self, samples: &[usize], white: &[f64]) -> f64 {
-        let mut r = vec![0.0; self.end - self.from];
-        for (&k, e) in samples.iter().zip(white) {
-            if (self.from..self.end).contains(&k) {
-                r[k - self.from] = *e;
-            }
-        }
-        self.predicts(&r)
-    }
-
     /// Score that an output's residual is predicted.
     pub(crate) fn predict(&self, problem: &Problem<'_>, y: &[Vec<f64>], o: usize) -> f64 {
         let known = |k: usize| problem.weight[o][k] > 0.0;
         let off = |k: usize| if known(k) { problem.y[o][k] - y[o][k] } else { 0.0 };
         let r: Vec<f64> = (self.from..self.end).map(off).collect();
-        self.predicts(&r)
-    }
-
-    /// Score that a series along the record is predicted.
-    fn predicts(&self, r: &[f64]) -> f64 {
-        if deviation(r) == 0.0 {
+        if deviation(&r) == 0.0 {
             return 0.0;
         }
         let split = self.reach + self.fitted.nrows();

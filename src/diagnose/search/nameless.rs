@@ -44,7 +44,9 @@ pub(super) fn nameless(study: &mut Study<'_, '_>) {
     let hidden = |study: &Study<'_, '_>, best: &Fit| {
         let left = best.noise.whiten(&best.residual);
         let n = (left.len() / study.problem.y.len().max(1)).max(1);
-        left.chunks(n).any(|r| whiteness(r) > COLOURED) || study.dependence(&best.model) > DEPENDS
+        best.noise.remembers()
+            || left.chunks(n).any(|r| whiteness(r) > COLOURED)
+            || study.dependence(&best.model) > DEPENDS
     };
     if curve || hidden(study, &best) {
         study.watch.report(0.9, "drawing free curves");

@@ -15,7 +15,7 @@ use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Model, Part, Problem, Span};
 use crate::fit::refit::Fitted;
 use crate::fit::segment_restart::restarted;
-use crate::prepare::input_dependence::{dependence, dependence_in_noise};
+use crate::prepare::input_dependence::dependence;
 use crate::prepare::operating_range::Nominal;
 use crate::statistics::strongest;
 use crate::watch::Watch;
@@ -125,13 +125,10 @@ impl<'a, 'b> Study<'a, 'b> {
         fits.iter().zip(models).filter_map(wish).collect()
     }
 
-    /// Score that what a model leaves depends on the inputs, itself or less what its past foretells.
+    /// Score that what a model leaves depends on the inputs.
     pub fn dependence(&self, model: &Model) -> f64 {
-        let Some(y) = self.problem.simulate(model, Grain::Coarse) else { return 0.0 };
-        let of = |score: fn(&Problem<'_>, &Nominal, &[Vec<f64>]) -> f64| {
-            score(self.problem, self.nominal, &y)
-        };
-        of(dependence).max(of(dependence_in_noise))
+        let y = self.problem.simulate(model, Grain::Coarse);
+        y.map_or(0.0, |y| dependence(self.problem, self.nominal, &y))
     }
 
     /// Fits the leading ones once more, each in its own disturbance.
