@@ -43,6 +43,7 @@ mod error;
 mod initialise;
 mod learned;
 mod linear;
+mod observer;
 mod reconstruct;
 mod resnet;
 mod sampled;

@@ -105,21 +105,9 @@ impl Tangent {
         all
     }
 
-    /// Errors one sample ahead of the linear observer along inputs and outputs, from a state:
-    /// those of a plant in its loop, which without measurements would drift.
-    pub fn followed(&self, u: &[&[f64]], y: &[&[f64]], start: &[f64]) -> Vec<f64> {
-        let SampledLinear { a, b, f, c, d, h, .. } = &self.linear;
-        let samples = y.first().map_or(0, |y| y.len());
-        let mut x = DVector::from_column_slice(start);
-        let mut all = vec![0.0; y.len() * samples];
-        for k in 0..samples {
-            let now = DVector::from_fn(u.len(), |i, _| u[i][k]);
-            let seen = c * &x + d * &now + h;
-            let e = DVector::from_fn(y.len(), |o, _| y[o][k] - seen[o]);
-            (0..y.len()).for_each(|o| all[o * samples + k] = e[o]);
-            x = a * x + b * now + f + &self.k * e.map(|e| if e.is_finite() { e } else { 0.0 });
-        }
-        all
+    /// The gain of the observer.
+    pub fn gain(&self) -> &DMatrix<f64> {
+        &self.k
     }
 }
 
