@@ -1,4 +1,12 @@
-//! The training loss on all sections as an objective for any optimiser.
+//! The training loss on all sections, or on some, as an objective for any optimiser; for methods of
+//! least squares with the derivatives of its residuals:
+//!
+//! ```text
+//! dr/dtheta by differences,   dr/dw = dr/dx_0 dx_0/dw
+//! ```
+//!
+//! for parameters of the model and, through the first states, for weights of the encoder (the
+//! Gauss-Newton method: Nocedal and Wright, *Numerical Optimization*, 2nd ed., 2006, ch. 10).
 
 use std::ops::ControlFlow;
 use std::sync::{Mutex, PoisonError};
