@@ -126,6 +126,22 @@ fn a_hidden_mode_of_a_plant_in_its_loop_is_found_too() {
     assert!(data.0 == zero.0 && data.1 < 0.5 * zero.1, "{data:?} {zero:?}");
 }
 
+#[test]
+fn friction_in_the_model_does_not_hide_a_mode_of_a_plant_in_its_loop() {
+    let absorber = "[[effects]]\ninto = \"v\"\nof = \"p\"\n\
+        effect.extra_mode = { frequency = 9.0, damping = 0.04, participation = 0.25 }\n";
+    let friction = "[[effects]]\ninto = \"v\"\nof = \"v\"\n\
+        effect.coulomb_friction = { level = -1.0, width = 0.05 }\n";
+    let found = |friction: &str| {
+        let truth = system(&format!("{INTEGRATOR}{friction}{absorber}{PID}"));
+        let model = system(&format!("{INTEGRATOR}{friction}{PID}"));
+        let (_, started) = recipe("data", 1).start(&model, &[looped(&truth, 1200, 1)], 1).unwrap();
+        hertz(&started.notes)
+    };
+    let (without, with) = (found(""), found(friction));
+    assert!((with / without - 1.0).abs() < 0.1, "{with} Hz beside friction, {without} Hz without");
+}
+
 /// Simulation error of the best model on the validation record over that of the baseline: from
 /// data, and from rest.
 fn both(seed: u64) -> [f64; 2] {

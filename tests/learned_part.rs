@@ -51,7 +51,7 @@ const TRAINING: &str = "[training]\nlength = 20\nbatch = 100\nepochs = 12\nseed 
     validation = { lengths = [5, 20], sections = 200 }\n";
 
 /// A start and its records: friction is known, hardening is hidden.
-fn task(more: &str) -> (Recipe, Augmented, [Record; 2]) {
+pub fn task(more: &str) -> (Recipe, Augmented, [Record; 2]) {
     let truth = system(&format!("{PLAIN}{FRICTION}{HARDENING}"));
     let records = [record(&truth, 600, 1), record(&truth, 400, 2)];
     let recipe = recipe(&format!("{TRAINING}{more}"));
@@ -60,7 +60,7 @@ fn task(more: &str) -> (Recipe, Augmented, [Record; 2]) {
     (recipe, start, records)
 }
 
-fn run(more: &str) -> Fit {
+pub fn run(more: &str) -> Fit {
     let (recipe, start, [training, validation]) = task(more);
     recipe.training.fit(&start, &[training], &[validation], &mut ()).unwrap()
 }
@@ -69,7 +69,7 @@ fn simulation(epoch: &Epoch) -> f64 {
     epoch.score.as_ref().unwrap().simulation[0]
 }
 
-fn gain(fit: &Fit) -> f64 {
+pub fn gain(fit: &Fit) -> f64 {
     simulation(&fit.history[fit.epoch]) / simulation(&fit.history[0])
 }
 

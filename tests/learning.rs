@@ -7,6 +7,7 @@ mod hidden_mode;
 mod innovations;
 mod learned_part;
 mod learned_part_read;
+mod least_squares;
 mod orthogonal;
 mod paper_msd;
 mod restarts;

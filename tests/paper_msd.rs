@@ -4,7 +4,7 @@
 mod record;
 
 use lacuna::encoder::{
-    Baseline, EncoderInitialiser, LeastSquares, LinearEncoder, Linearised, Outputs, Prefit,
+    About, Baseline, EncoderInitialiser, LeastSquares, LinearEncoder, Linearised, Outputs, Prefit,
     ResNetEncoder, StateError, Window,
 };
 use lacuna::evaluate::{Init, Metrics, Simulation};
@@ -96,7 +96,8 @@ fn shared_data_initialisers_are_as_good_as_their_peers() {
             .map(|outputs| validation.score(&encoder, outputs).unwrap());
         (started, simulated, measured)
     };
-    let (started, simulated, measured) = start(&Linearised::default());
+    let at_rest = Linearised { about: Some(About::Equilibrium), gain: None };
+    let (started, simulated, measured) = start(&at_rest);
     assert_eq!(started.rank, Some(4));
     states_near("linearised", &simulated, [0.0448, 0.935, 0.0472, 0.878]);
     states_near("linearised, measured", &measured, [0.0526, 0.997, 0.0523, 0.957]);

@@ -146,7 +146,7 @@ impl Done<'_> {
         let (mut run, mut before) = (None, vec![]);
         if let Some(record) = scored {
             before = Simulation::of(self.system, record, Init::Forgotten)?.outputs;
-            run = Some(fit.model.simulate(record)?);
+            run = Some(fit.model.simulate(record)?.settled(self.recipe.training.settle));
         }
         let baseline: Vec<Vec<f64>> = before.into_iter().map(|(_, values)| values).collect();
         if let (Some(record), Some(run)) = (scored, &run) {

@@ -26,6 +26,7 @@ use serde_json::json;
 const PLAIN: &str = "\
 [encoder.resnet]\nn_a = 9\nn_b = 9\ncurrent_sample = true
 [initialiser.linearised]
+about = \"equilibrium\"
 [training]\nlength = 200\nbatch = 3000\nepochs = 20
 [training.optimiser]\nrate = 1e-3
 [training.validation]\nsimulation = false\nsections = 0";

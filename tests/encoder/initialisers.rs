@@ -146,7 +146,7 @@ fn a_nonlinear_baseline_is_met_best_where_it_is_linearised() {
     let baseline = Baseline::new(&system, &record).unwrap();
     let off = |about: About| {
         let mut encoder = LinearEncoder::new(Window::past(4));
-        let method = Linearised { about, gain: None };
+        let method = Linearised { about: Some(about), gain: None };
         method.initialise(&mut encoder, &baseline, 0).unwrap();
         // after the motion from 0 to there has died out
         let Course { outputs: y, states: x } = baseline.simulate().unwrap();
@@ -163,6 +163,28 @@ fn a_nonlinear_baseline_is_met_best_where_it_is_linearised() {
         "largest error of the position in m: at 0 {at_zero:.1e}, there {there:.1e}, beside {beside:.1e}"
     );
     assert!(there < 1e-4 && beside < 3e-4 && at_zero > 20.0 * beside);
+}
+
+#[test]
+fn friction_at_rest_does_not_make_the_damper_of_a_record() {
+    use lacuna::plugins::effects::coulomb_friction::CoulombFriction;
+    use lacuna::system::Placed;
+    let mut system = sampled(duffing(0.0));
+    let friction = CoulombFriction { level: -2.0, width: 0.05 };
+    system.effects = vec![Placed::new(Box::new(friction), "force", Some("v"))];
+    let record = driven(1, 4000, 20.0, 0.0);
+    let baseline = Baseline::new(&system, &record).unwrap();
+    let start = |method: &dyn EncoderInitialiser| {
+        let mut encoder = LinearEncoder::new(Window::past(4));
+        method.initialise(&mut encoder, &baseline, 0).unwrap()
+    };
+    let at_rest = Linearised { about: Some(About::Equilibrium), gain: None };
+    let [along, at_rest] = [start(&Linearised::default()), start(&at_rest)];
+    let least = start(&LeastSquares::default());
+    println!("{along}\n{at_rest}\n{least}");
+    assert!(worst(&along.states) < 0.1 * worst(&at_rest.states));
+    // not far from the best linear map there is
+    assert!(worst(&along.states) < 2.0 * worst(&least.states));
 }
 
 #[test]
@@ -302,6 +324,7 @@ fn initialisers_survive_their_own_file() {
         "[innovation]\ngain = [[0.1], [0.2]]",
         "[linearised]\nabout = { point = { x = [0.1, 0.0], u = [1.0] } }",
         "[linearised]\nabout = \"equilibrium\"",
+        "[linearised]",
         "[least_squares]\noutputs = \"measured\"",
         "[prefit]\nadam_steps = 0\nstart = \"least_squares\"",
     ] {

@@ -11,7 +11,9 @@ pub use super::unknown::{Settings, Unknown};
 /// Damping values tried at once, as powers of this.
 const LADDER: f64 = 6.0;
 const RUNGS: i32 = 7;
-
+/// Unknowns from which on products of columns are formed as those of matrices, and rows of one.
+const MANY: usize = 100;
+const ROWS: usize = 1024;
 #[derive(Debug, Clone, PartialEq)]
 enum Phase {
     /// Waits for the residuals at the start.
@@ -207,12 +209,16 @@ impl Levenberg {
         let n = self.unknowns.len();
         let mut normal = DMatrix::zeros(n, n);
         let mut gradient = DVector::zeros(n);
+        let many = (n >= MANY).then(|| self.products());
+        let product = |i: usize, j: usize| match &many {
+            Some(products) => products[(i, j)],
+            None => dot(&self.columns[i], &self.columns[j]),
+        };
         for i in 0..n {
             let scale = self.unknowns[i].scale;
             gradient[i] = -dot(&self.columns[i], &self.residuals) * scale;
             for j in 0..=i {
-                let value =
-                    dot(&self.columns[i], &self.columns[j]) * scale * self.unknowns[j].scale;
+                let value = product(i, j) * scale * self.unknowns[j].scale;
                 normal[(i, j)] = value;
                 normal[(j, i)] = value;
             }
@@ -223,6 +229,18 @@ impl Levenberg {
             }
         }
         (normal, gradient)
+    }
+
+    /// J'J, some rows of J at a time.
+    fn products(&self) -> DMatrix<f64> {
+        let n = self.columns.len();
+        let mut sum = DMatrix::zeros(n, n);
+        for from in (0..self.residuals.len()).step_by(ROWS) {
+            let rows = ROWS.min(self.residuals.len() - from);
+            let part = DMatrix::from_fn(rows, n, |row, column| self.columns[column][from + row]);
+            sum.gemm(1.0, &part.transpose(), &part, 1.0);
+        }
+        sum
     }
 
     /// The priors' share of the cost.

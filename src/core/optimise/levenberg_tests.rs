@@ -44,3 +44,19 @@ fn a_prior_pulls_as_hard_as_its_deviation_says() {
     let p = fit.point[0];
     assert!((2.0 - p - p * (1.0 + (2.0 - p).powi(2))).abs() < 0.02, "{:?}", fit.point);
 }
+
+#[test]
+fn many_unknowns_are_solved_as_few_are() {
+    // r_i = sum_j a_ij (p_j - j), more rows than one product of matrices takes
+    let (n, rows) = (MANY + 3, ROWS + 100);
+    let entry = |i: usize, j: usize| ((i * 31 + j * 17) as f64 * 0.37).sin();
+    let start = (0..n).map(|_| Unknown::new(0.0, 1.0)).collect();
+    let fit = run(Levenberg::new(start, Settings::default()), |p| {
+        let row = |i: usize| (0..n).map(|j| entry(i, j) * (p[j] - j as f64)).sum();
+        Some((0..rows).map(row).collect())
+    });
+    let products = fit.products();
+    let wanted = dot(&fit.columns[5], &fit.columns[9]);
+    assert!((products[(5, 9)] - wanted).abs() < 1e-9 * products[(5, 5)]);
+    assert!(fit.squares < 1e-6, "{}", fit.squares);
+}

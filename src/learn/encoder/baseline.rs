@@ -5,9 +5,7 @@ use std::sync::OnceLock;
 
 use serde::{Deserialize, Serialize};
 
-use super::{
-    About, Encoder, EncoderError, SampledLinear, Scaling, Shape, Spread, StateError, Window,
-};
+use super::{Encoder, EncoderError, Scaling, Shape, Spread, StateError, Window};
 use crate::data::{Record, Signal};
 use crate::model::Signals;
 use crate::system::{Drive, Lane, Origin, Plan, System};
@@ -206,19 +204,14 @@ impl<'a> Baseline<'a> {
         (&self.drive.inputs, &self.drive.segments)
     }
 
+    /// The inputs along the simulation, and the samples that belong together.
+    pub(super) fn driven(&self) -> (&[Vec<f64>], &[Range<usize>]) {
+        (self.driven.as_ref().unwrap_or(&self.drive.inputs), &self.drive.segments)
+    }
+
     /// The outputs as they were measured, where all of them were.
     pub(crate) fn seen(&self) -> Option<Vec<&[f64]>> {
         self.measured.iter().copied().collect()
-    }
-
-    /// The baseline, sampled and linear about a point; sizes of states and inputs as differences
-    /// need them.
-    pub(crate) fn linear(
-        &self,
-        about: &About,
-        scales: &[f64],
-    ) -> Result<SampledLinear, EncoderError> {
-        Ok(SampledLinear::of_plan(self.system, &self.plan, about, scales)?.system)
     }
 
     /// Whether its simulation is that of a plant in its loop.

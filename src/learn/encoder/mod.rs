@@ -10,7 +10,7 @@
 //! | [`Random`] | nothing | the usual start |
 //! | [`Reconstruct`] | a linear baseline | eq. `final_noiseless` |
 //! | [`Innovation`] | a linear baseline with gain K | eq. `noisy:final` |
-//! | [`Linearised`] | slopes at a point | Sec. 3.1.3 and its footnote |
+//! | [`Linearised`] | a record, or slopes at a point | statistical linearisation, or Sec. 3.1.3 and its footnote |
 //! | [`LeastSquares`] | a record | Sec. 3.2, the linear problem |
 //! | [`Prefit`] | a record | Sec. 3.2, V_enc |
 //!
@@ -43,12 +43,14 @@ mod error;
 mod initialise;
 mod learned;
 mod linear;
+mod observer;
 mod reconstruct;
 mod resnet;
 mod sampled;
 mod scaling;
 mod slopes;
 mod started;
+mod statistical;
 mod window;
 
 pub use error::EncoderError;

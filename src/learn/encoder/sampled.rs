@@ -137,11 +137,11 @@ pub(crate) struct Lead {
 }
 
 impl Lead {
-    fn none(system: SampledLinear) -> Self {
+    pub(super) fn none(system: SampledLinear) -> Self {
         Self { system, ahead: None }
     }
 
-    fn of(mut system: SampledLinear, now: &DMatrix<f64>, ahead: DMatrix<f64>) -> Self {
+    pub(super) fn of(mut system: SampledLinear, now: &DMatrix<f64>, ahead: DMatrix<f64>) -> Self {
         system.b = &system.a * &ahead + now;
         system.d += &system.c * &ahead;
         Self { system, ahead: Some(ahead) }

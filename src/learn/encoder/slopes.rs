@@ -105,7 +105,7 @@ impl<'a> Map<'a> {
     }
 
     /// Next states and outputs at a point, with their slopes.
-    fn slopes(&self, x: &[f64], u: &[f64]) -> Result<(Slopes, Slopes), EncoderError> {
+    pub fn slopes(&self, x: &[f64], u: &[f64]) -> Result<(Slopes, Slopes), EncoderError> {
         let (next, output) = if self.system.effects.is_empty() {
             let law = self.system.model.as_ref();
             (self.next(law, x, u), self.ask(law, Ask::Output, x, u))

@@ -56,7 +56,7 @@ impl std::fmt::Display for Ablation {
 pub fn ablate(fit: &mut Fit, records: &[Record], prune: bool) -> Result<Vec<Ablation>, TrainError> {
     let settings = Validation { lengths: vec![1], ..Validation::default() };
     let ones = vec![1.0; fit.model.model.outputs];
-    let by = By { settings: &settings, length: 1, deviations: &ones, innovations: 0.0 };
+    let by = By { settings: &settings, length: 1, deviations: &ones, innovations: 0.0, settle: 0 };
     ablate_by(fit, records, prune, &by)
 }
 
@@ -69,6 +69,8 @@ pub(super) struct By<'a> {
     pub deviations: &'a [f64],
     /// Weight of the likelihood of innovations beside the simulation.
     pub innovations: f64,
+    /// Samples in which a simulation settles.
+    pub settle: usize,
 }
 
 /// The same where predictions may count beside the simulation: a part is then needed that either of
@@ -82,7 +84,7 @@ pub(super) fn ablate_by(
     let model = fit.model.clone();
     let all = groups(&model.model, model.signals().as_ref());
     let shooting = Shooting { length: by.length, threads: 1, arithmetic: Arithmetic::Double };
-    let mut scorer = Scorer::new(&model, records, by.settings, shooting)?;
+    let mut scorer = Scorer::new(&model, records, by.settings, shooting)?.settling(by.settle);
     let mut score = |parameters: &[f64]| scorer.score(parameters);
     let mut present = model.parameters();
     let mut whole = score(&present)?;

@@ -43,6 +43,20 @@ pub struct Run {
 }
 
 impl Run {
+    /// The same with so many samples at the beginning of each segment left out: those in which it
+    /// settles.
+    #[must_use]
+    pub fn settled(mut self, samples: usize) -> Self {
+        for start in &mut self.starts {
+            for series in &mut self.outputs {
+                let end = (*start + samples).min(series.len());
+                series[*start..end].fill(f64::NAN);
+            }
+            *start += samples;
+        }
+        self
+    }
+
     /// Root mean square error of each output, where it was measured.
     pub(super) fn errors(outputs: &[Vec<f64>], measured: &[&[f64]]) -> Vec<f64> {
         let rmse = outputs.iter().zip(measured).map(|(own, measured)| {

@@ -63,7 +63,7 @@ impl<E: Number> Guess<E> {
     }
 
     /// Number of states that it estimates.
-    fn states(&self) -> usize {
+    pub fn states(&self) -> usize {
         match &self.by {
             By::Network(net) => net.layout().outputs(),
             By::Itself(_, states) => *states,

@@ -28,11 +28,12 @@ impl LeftOver {
     ) -> Result<Self, EncoderError> {
         let course = known.simulate()?;
         let y: Vec<&[f64]> = measured.iter().map(|y| &y[part.clone()]).collect();
+        // in its loop a plant is followed by an observer: without measurements it would drift
         let series = if known.is_looped() {
             let (inputs, _) = known.drives();
             let u: Vec<&[f64]> = inputs.iter().map(|u| &u[part.clone()]).collect();
             let start: Vec<f64> = course.states.iter().map(|x| x[part.start]).collect();
-            tangent.followed(&u, &y, &start)
+            known.innovations(tangent.gain(), [&u, &y], &start)?
         } else {
             let errors = y
                 .iter()

@@ -35,6 +35,7 @@ mod sections;
 mod settings;
 mod shooting;
 mod sparse;
+mod squares;
 mod steps;
 mod tangent;
 mod task;

@@ -40,13 +40,14 @@ impl Trainer {
         let groups = fit.model.groups();
         let drawn = groups.iter().any(|group| self.sparse.on(group.kind) > 0.0);
         if !self.sparse.prune || !drawn || self.sparse.refit == 0 || validation.is_empty() {
-            return match self.innovations == 0.0 {
+            return match self.innovations == 0.0 && self.settle == 0 {
                 true => ablate(fit, validation, self.sparse.prune),
                 false => {
                     let (settings, length) = (&self.validation, self.length);
                     let (model, innovations) = (fit.model.clone(), self.innovations);
+                    let settle = self.settle;
                     let deviations = &Task::of(self, &model, training)?.deviations;
-                    let by = By { settings, length, deviations, innovations };
+                    let by = By { settings, length, deviations, innovations, settle };
                     ablate_by(fit, validation, self.sparse.prune, &by)
                 }
             };
@@ -116,6 +117,7 @@ impl<'a> Again<'a> {
     ) -> Result<Self, TrainError> {
         let task = Task::of(trainer, model, training)?;
         let scorer = Scorer::new(model, validation, &trainer.validation, task.shooting)?;
+        let scorer = scorer.settling(trainer.settle);
         Ok(Self { trainer, model, task, scorer })
     }
 
@@ -136,7 +138,7 @@ impl<'a> Again<'a> {
         let mut theta = units.enter(parameters);
         let (steps, lbfgs) = (self.trainer.sparse.refit, Lbfgs::default());
         let mut stopped = |done: usize, of: usize| follow.on_step(done, of);
-        let done = leg(&lbfgs, steps, &mut self.task.loss, &units, &mut theta, &mut stopped)?;
+        let done = leg(&lbfgs, steps, 0, &mut self.task.loss, &units, &mut theta, &mut stopped)?;
         if done.asked {
             return Ok(None);
         }

@@ -176,6 +176,18 @@ impl Units {
         sum
     }
 
+    /// Whether all that [`Units::penalise`] adds is half a sum of squares, of every entry freely.
+    pub fn is_squares(&self) -> bool {
+        self.groups.is_empty() && self.s == 0.0 && self.held.is_empty()
+    }
+
+    /// The residuals of that sum: distances from nominal values by the root of their weight.
+    pub fn away(&self, theta: &[f64]) -> impl Iterator<Item = f64> + '_ {
+        let own = self.physical.iter().map(|&(at, nominal, _)| theta[at] - nominal);
+        let own: Vec<f64> = own.collect();
+        own.into_iter().map(|away| self.penalty.sqrt() * away)
+    }
+
     /// Moves physical parameters back between their bounds, and a gain of innovations to where the
     /// predictor forgets.
     pub fn project(&self, theta: &mut [f64]) {

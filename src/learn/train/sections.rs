@@ -8,6 +8,8 @@ use crate::network::Row;
 use super::course::Course;
 use super::guess::{Guess, GuessWork};
 
+mod residuals;
+
 /// Sums that are formed separately and then added up in order, so that the result does not
 /// depend on which thread formed which.
 const SUMS: usize = 64;
@@ -19,12 +21,15 @@ const SUMS: usize = 64;
 /// ```
 ///
 /// The print divides by T + 1 but sums T terms; this is the mean over the terms that are
-/// summed. What was not measured does not count.
+/// summed. What was not measured does not count; samples in which a section settles count less.
 pub(crate) struct Sections<'a, E: Number> {
     pub engine: Engine<'a, E>,
     pub guess: Guess<E>,
     /// Samples in a section.
     pub length: usize,
+    /// Those at its beginning that count by `early` alone.
+    pub settle: usize,
+    pub early: f64,
     /// Weight of each output: one over its variance, or 1.
     pub weights: Vec<f64>,
     threads: Vec<Thread<E>>,
@@ -61,7 +66,7 @@ impl<'a, E: Number> Sections<'a, E> {
     ) -> Self {
         let thread = |_| Thread { work: engine.work(length), guess: guess.work() };
         let threads = (0..threads.max(1)).map(thread).collect();
-        Self { engine, guess, length, weights, threads, sums: vec![] }
+        Self { engine, guess, length, settle: 0, early: 0.0, weights, threads, sums: vec![] }
     }
 
     /// Bytes that each thread holds.
@@ -165,6 +170,11 @@ impl<'a, E: Number> Sections<'a, E> {
         }
     }
 
+    /// How much a sample of a section counts.
+    fn share_at(&self, t: usize) -> f64 {
+        if t < self.settle { self.early } else { 1.0 }
+    }
+
     /// One block of sections, forward and, if wanted, back.
     fn block(
         &self,
@@ -185,12 +195,16 @@ impl<'a, E: Number> Sections<'a, E> {
         for t in 0..self.length {
             self.look(course, &at, starts.len(), work, t);
             self.engine.forward(work, t);
+            let share = self.share_at(t);
+            if share == 0.0 {
+                continue;
+            }
             if let Some(counted) = &course.counted {
                 for o in 0..outputs {
                     let i = t * outputs + o;
                     let lanes = work.errors[i].lanes().iter().zip(work.measured[o].lanes());
                     for ((error, measured), &k) in lanes.zip(starts) {
-                        let weight = counted[o][k + t];
+                        let weight = share * counted[o][k + t];
                         if !measured.wide().is_nan() {
                             squares[i] += weight * error.wide() * error.wide();
                             counts[i] += weight;
@@ -201,9 +215,9 @@ impl<'a, E: Number> Sections<'a, E> {
             }
             for i in t * outputs..(t + 1) * outputs {
                 let lanes = work.errors[i].lanes()[..starts.len()].iter();
-                squares[i] += lanes.map(|e| e.wide() * e.wide()).sum::<f64>();
+                squares[i] += share * lanes.map(|e| e.wide() * e.wide()).sum::<f64>();
                 let measured = work.measured[i % outputs].lanes()[..starts.len()].iter();
-                counts[i] += measured.filter(|m| !m.wide().is_nan()).count() as f64;
+                counts[i] += share * measured.filter(|m| !m.wide().is_nan()).count() as f64;
             }
         }
         if !back {
@@ -216,7 +230,7 @@ impl<'a, E: Number> Sections<'a, E> {
                 self.look(course, &at, starts.len(), work, t);
             }
             for (o, row) in along_y.clone().enumerate() {
-                let weight = self.weights[o];
+                let weight = self.weights[o] * self.share_at(t);
                 let error = work.errors[t * outputs + o];
                 let to = work.adjoints[row].lanes_mut().iter_mut();
                 match &course.counted {

@@ -60,7 +60,7 @@ impl Growing {
     }
 }
 
-/// A finish after the epochs: another optimiser on all sections at once.
+/// A finish after the epochs: another optimiser on all sections at once, or on many of them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Finish {
@@ -70,11 +70,20 @@ pub struct Finish {
     pub legs: usize,
     /// Steps in a leg.
     pub steps: usize,
+    /// Sections at most, evenly spread; 0 for all. A section for every sample sees each sample
+    /// once for each of its own.
+    #[serde(skip_serializing_if = "is_all")]
+    pub sections: usize,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde asks for")]
+fn is_all(sections: &usize) -> bool {
+    *sections == 0
 }
 
 impl Default for Finish {
     fn default() -> Self {
-        Self { optimiser: Lbfgs::default().into(), legs: 10, steps: 50 }
+        Self { optimiser: Lbfgs::default().into(), legs: 10, steps: 50, sections: 0 }
     }
 }
 

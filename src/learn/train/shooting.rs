@@ -25,15 +25,15 @@ pub enum Arithmetic {
 /// Multiple shooting with sections of length T (Hoekstra et al., eq. `loss_function`; see
 /// [`MultipleShooting::loss`] for how we read it).
 pub struct MultipleShooting<'a> {
-    kernel: Kernel<'a>,
-    starts: Vec<usize>,
+    pub(super) kernel: Kernel<'a>,
+    pub(super) starts: Vec<usize>,
     parameters: usize,
-    orthogonal: Option<Box<Orthogonal<'a>>>,
+    pub(super) orthogonal: Option<Box<Orthogonal<'a>>>,
     /// Weight of the likelihood of innovations.
-    innovations: f64,
+    pub(super) innovations: f64,
 }
 
-enum Kernel<'a> {
+pub(super) enum Kernel<'a> {
     Double(Box<Sections<'a, f64>>, Course<f64>),
     Single(Box<Sections<'a, f32>>, Course<f32>),
 }
@@ -210,6 +210,12 @@ impl<'a> MultipleShooting<'a> {
         }
         outcome
     }
+}
+
+/// At most so many, evenly spread; 0 for all.
+pub(super) fn evenly(starts: &[usize], most: usize) -> Vec<usize> {
+    let step = if most == 0 { 1 } else { starts.len().div_ceil(most).max(1) };
+    starts.iter().copied().step_by(step).collect()
 }
 
 /// Where sections of `length` samples can begin, over all records one after the other.

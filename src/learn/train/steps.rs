@@ -45,7 +45,10 @@ impl<'a> Steps<'a> {
         let Task { loss, deviations, shooting } = Task::of(trainer, start, training)?;
         let scorer = match validation {
             [] => None,
-            records => Some(Scorer::new(start, records, &trainer.validation, shooting)?),
+            records => {
+                let scorer = Scorer::new(start, records, &trainer.validation, shooting)?;
+                Some(scorer.settling(trainer.settle))
+            }
         };
         let mut units = Units::of(&start.model, start.encoder.weights().len(), trainer.penalty)
             .sparse(&trainer.sparse, &start.groups())
@@ -95,7 +98,7 @@ impl<'a> Steps<'a> {
                 self.loss.set_length(growing.length(self.trainer.length, self.state.epoch));
             }
             if !self.trainer.optimiser.steps_by_batch() {
-                if self.leg(follow, &self.trainer.optimiser, LEG)? {
+                if self.leg(follow, &self.trainer.optimiser, LEG, 0)? {
                     return self.end(Ended::Asked);
                 }
                 continue;
@@ -125,7 +128,7 @@ impl<'a> Steps<'a> {
                 if self.state.legs == 0 {
                     self.begin_finish();
                 }
-                if self.leg(follow, &finish.optimiser, finish.steps)? {
+                if self.leg(follow, &finish.optimiser, finish.steps, finish.sections)? {
                     return self.end(Ended::Asked);
                 }
             }
@@ -147,12 +150,15 @@ impl<'a> Steps<'a> {
         follow: &mut dyn Follow,
         optimiser: &Named,
         steps: usize,
+        sections: usize,
     ) -> Result<bool, TrainError> {
         let finishing = self.state.epoch >= self.trainer.epochs;
         let mut stopped = |done: usize, of: usize| follow.on_step(done, of);
         let state = &mut self.state;
-        let done =
-            leg(&**optimiser, steps, &mut self.loss, &self.units, &mut state.theta, &mut stopped)?;
+        let (loss, theta) = (&mut self.loss, &mut state.theta);
+        let spread = loss.spread(sections);
+        loss.weigh_settling(&self.units.leave(theta), &spread);
+        let done = leg(&**optimiser, steps, sections, loss, &self.units, theta, &mut stopped)?;
         if done.asked {
             self.save(true)?;
             return Ok(true);

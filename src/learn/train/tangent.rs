@@ -10,7 +10,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::encoder::{About, Baseline as Known, EncoderError, SampledLinear};
+use crate::encoder::{Baseline as Known, EncoderError, SampledLinear};
 use crate::lfr::Sink;
 
 /// Size of the largest pole from which on a baseline counts as one that does not forget.
@@ -20,7 +20,7 @@ const NOISE: f64 = 0.1;
 /// Steps of the observer's Riccati equation.
 const STEPS: usize = 500;
 
-/// A baseline, linear about the mean of its simulation.
+/// A baseline, linear along its simulation.
 pub(super) struct Tangent {
     linear: SampledLinear,
     k: DMatrix<f64>,
@@ -33,13 +33,8 @@ impl Tangent {
     pub fn of(known: &Known<'_>) -> Result<Self, EncoderError> {
         let scaling = known.scaling()?;
         let n = known.shape().baseline_states;
-        let offsets = |spreads: &[crate::encoder::Spread]| -> Vec<f64> {
-            spreads.iter().map(|spread| spread.offset).collect()
-        };
         let states = &scaling.states[..n];
-        let scales: Vec<f64> = states.iter().chain(&scaling.inputs).map(|s| s.scale).collect();
-        let about = About::Point { x: offsets(states), u: offsets(&scaling.inputs) };
-        let linear = known.linear(&about, &scales)?;
+        let linear = known.linear_along()?.system;
         let largest = linear.a.complex_eigenvalues().iter().map(|p| p.norm()).fold(0.0, f64::max);
         let mut k = DMatrix::zeros(n, linear.c.nrows());
         if known.is_looped() || !(largest < FORGETS) {
@@ -110,21 +105,9 @@ impl Tangent {
         all
     }
 
-    /// Errors one sample ahead of the linear observer along inputs and outputs, from a state:
-    /// those of a plant in its loop, which without measurements would drift.
-    pub fn followed(&self, u: &[&[f64]], y: &[&[f64]], start: &[f64]) -> Vec<f64> {
-        let SampledLinear { a, b, f, c, d, h, .. } = &self.linear;
-        let samples = y.first().map_or(0, |y| y.len());
-        let mut x = DVector::from_column_slice(start);
-        let mut all = vec![0.0; y.len() * samples];
-        for k in 0..samples {
-            let now = DVector::from_fn(u.len(), |i, _| u[i][k]);
-            let seen = c * &x + d * &now + h;
-            let e = DVector::from_fn(y.len(), |o, _| y[o][k] - seen[o]);
-            (0..y.len()).for_each(|o| all[o * samples + k] = e[o]);
-            x = a * x + b * now + f + &self.k * e.map(|e| if e.is_finite() { e } else { 0.0 });
-        }
-        all
+    /// The gain of the observer.
+    pub fn gain(&self) -> &DMatrix<f64> {
+        &self.k
     }
 }
 

@@ -35,6 +35,7 @@ impl<'a> Task<'a> {
         let Trainer { length, threads, arithmetic, .. } = *trainer;
         let shooting = Shooting { length, threads, arithmetic };
         let mut loss = MultipleShooting::new(start, training, shooting, &variances)?;
+        loss.set_settle(trainer.settle);
         if let Some(counts) = counts {
             loss.count_by(counts);
         }

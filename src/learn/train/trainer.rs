@@ -28,6 +28,9 @@ use super::{Augmented, MultipleShooting, TrainError};
 pub struct Trainer {
     /// Samples in a section, T.
     pub length: usize,
+    /// Samples at the beginning of a section that do not count: until the encoder's error has faded.
+    #[serde(skip_serializing_if = "is_none")]
+    pub settle: usize,
     /// Sections in a step.
     pub batch: usize,
     /// Passes over all sections.
@@ -104,6 +107,7 @@ impl Default for Trainer {
     fn default() -> Self {
         Self {
             length: 200,
+            settle: 0,
             batch: 3000,
             epochs: 2000,
             seed: 0,
@@ -153,6 +157,10 @@ impl Trainer {
                     expected: "at least 1",
                 });
             }
+        }
+        if self.settle >= self.growing.map_or(self.length, |g| g.from.min(self.length)) {
+            let (found, expected) = (self.settle.to_string(), "fewer samples than a section has");
+            return Err(TrainError::Setting { name: "settle", found, expected });
         }
         let Sparse { states, inputs, outputs, s, .. } = self.sparse;
         let records = self.weights.records.iter().map(|&weight| ("weights.records", weight));

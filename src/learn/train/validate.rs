@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::data::Record;
 
 use super::course::Series;
-use super::shooting::{Shooting, section_starts};
+use super::shooting::{Shooting, evenly, section_starts};
 use super::{Augmented, MultipleShooting, TrainError};
 
 /// What is computed on the validation records.
@@ -48,6 +48,7 @@ pub(crate) struct Scorer<'a> {
     records: &'a [Record],
     copy: Augmented,
     outputs: usize,
+    settle: usize,
 }
 
 impl<'a> Scorer<'a> {
@@ -66,15 +67,17 @@ impl<'a> Scorer<'a> {
             let reach = augmented.encoder.window().reach();
             return Err(TrainError::TooShort { which: "validation", length, reach });
         }
-        let step = match settings.sections {
-            0 => 1,
-            most => all.len().div_ceil(most),
-        };
-        let starts = all.into_iter().step_by(step).collect();
+        let starts = evenly(&all, settings.sections);
         let sections =
             MultipleShooting::new(augmented, records, Shooting { length, ..shooting }, &ones)?;
         let (outputs, copy) = (augmented.model.outputs, augmented.clone());
-        Ok(Self { sections, starts, settings, records, copy, outputs })
+        Ok(Self { sections, starts, settings, records, copy, outputs, settle: 0 })
+    }
+
+    /// The same with so many samples at the beginning of each simulation left out.
+    pub fn settling(mut self, settle: usize) -> Self {
+        self.settle = settle;
+        self
     }
 
     /// The errors at these parameters.
@@ -101,13 +104,21 @@ impl<'a> Scorer<'a> {
                 };
                 for (i, measured) in self.copy.series(record, 1)?.y.iter().enumerate() {
                     // what diverged is not a number and must not look like a gap
-                    for k in run.starts.iter().flat_map(|&start| start..end_of(record, start)) {
+                    for k in run
+                        .starts
+                        .iter()
+                        .flat_map(|&start| start + self.settle..end_of(record, start))
+                    {
                         if !measured[k].is_nan() {
                             squares[i] += (run.outputs[i][k] - measured[k]).powi(2);
                             counts[i] += 1.0;
                         }
                     }
                 }
+            }
+            if self.settle > 0 && counts.iter().all(|count| *count == 0.0) {
+                let (length, reach) = (self.settle + 1, self.copy.encoder.window().reach());
+                return Err(TrainError::TooShort { which: "validation", length, reach });
             }
             simulation = squares
                 .iter()

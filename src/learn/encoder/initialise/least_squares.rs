@@ -20,7 +20,7 @@ pub struct LeastSquares {
 }
 
 /// A solution of the normal equations.
-pub(super) struct Solved {
+pub(in crate::encoder) struct Solved {
     pub map: LinearMap,
     pub rank: usize,
     pub condition: f64,
@@ -33,13 +33,18 @@ const STRETCH: usize = 512;
 
 /// The map from windows to states with the least sum of squares.
 pub(super) fn solve(examples: &Examples) -> Solved {
+    solve_within(examples, RANK)
+}
+
+/// The same with directions left out whose share of the largest variance is at most `rank`.
+pub(in crate::encoder) fn solve_within(examples: &Examples, rank: f64) -> Solved {
     let n = examples.samples;
     let (rows, centres, sizes) = scaled(&examples.windows, n);
     let (states, middles, spans) = scaled(&examples.states, n);
     let m = centres.len();
     let eigen = covariance(&rows, n).symmetric_eigen();
     let largest = eigen.eigenvalues.max();
-    let kept: Vec<usize> = (0..m).filter(|&i| eigen.eigenvalues[i] > RANK * largest).collect();
+    let kept: Vec<usize> = (0..m).filter(|&i| eigen.eigenvalues[i] > rank * largest).collect();
     let smallest = kept.iter().map(|&i| eigen.eigenvalues[i]).fold(largest, f64::min);
     // the inverse, on the directions that count
     let solved = |right: DVector<f64>| {

@@ -6,6 +6,7 @@ mod prefit;
 mod random;
 
 pub use least_squares::LeastSquares;
+pub(super) use least_squares::solve_within;
 pub use model_based::{About, Innovation, Linearised, Reconstruct};
 pub use prefit::{Prefit, PrefitStart};
 pub use random::Random;

@@ -23,14 +23,16 @@ pub struct Innovation {
     pub gain: Option<Vec<Vec<f64>>>,
 }
 
-/// The same for the linearisation of any baseline (Sec. 3.1.3). At a point that is no
-/// equilibrium the constants of the map go into the encoder's bias (its footnote).
+/// The same for the linearisation of any baseline: along its simulation (statistical
+/// linearisation; Booton 1954), or about a point (Sec. 3.1.3), where the constants of the map go
+/// into the encoder's bias if it is no equilibrium (its footnote). A slope at a point says little
+/// of a law that is steep there alone, as dry friction is at rest.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Linearised {
-    /// The point.
-    #[serde(default)]
-    pub about: About,
+    /// The point; absent: along the record.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub about: Option<About>,
     /// K as in [`Innovation`]; none where it is absent.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gain: Option<Vec<Vec<f64>>>,
@@ -92,6 +94,18 @@ fn linear(initialiser: &'static str, baseline: &Baseline<'_>) -> Result<Lead, En
         let model = baseline.system.model.typetag_name().to_string();
         EncoderError::NotLinear { initialiser, model }
     })
+}
+
+/// A baseline, linear about a point.
+fn about_point(baseline: &Baseline<'_>, about: &About) -> Result<Lead, EncoderError> {
+    // sizes of the differences that a system with effects needs
+    let mut scales = vec![];
+    if !baseline.system.effects.is_empty() {
+        let scaling = baseline.scaling()?;
+        let states = scaling.states.iter().take(baseline.shape().baseline_states);
+        scales = states.chain(&scaling.inputs).map(|s| s.scale).collect();
+    }
+    SampledLinear::of_plan(baseline.system, baseline.plan(), about, &scales)
 }
 
 /// Sets an encoder's linear part to the map of a linear system.
@@ -200,15 +214,10 @@ impl EncoderInitialiser for Linearised {
         if let Some(started) = without_weights("linearised", encoder, baseline, seed)? {
             return Ok(started);
         }
-        // sizes of the differences that a system with effects needs
-        let mut scales = vec![];
-        if !baseline.system.effects.is_empty() {
-            let scaling = baseline.scaling()?;
-            let states = scaling.states.iter().take(baseline.shape().baseline_states);
-            scales = states.chain(&scaling.inputs).map(|s| s.scale).collect();
-        }
-        let mut lead =
-            SampledLinear::of_plan(baseline.system, baseline.plan(), &self.about, &scales)?;
+        let mut lead = match &self.about {
+            Some(about) => about_point(baseline, about)?,
+            None => baseline.linear_along()?,
+        };
         let system = &mut lead.system;
         system.k = match &self.gain {
             Some(rows) => Some(gain(rows, system.a.nrows(), system.c.nrows())?),
