@@ -14,7 +14,7 @@ use crate::validate::false_discovery::{either, on_test};
 use crate::validate::test_error::removed;
 
 /// The registered effect that is another value of a parameter.
-fn parameter_effect() -> &'static str {
+pub(crate) fn parameter_effect() -> &'static str {
     let own = register::effects().into_iter();
     let own = own.map(|(card, effect)| (card.name, effect.card().mechanism));
     own.into_iter().find(|(_, by)| *by == Mechanism::Parameter).map_or("", |(name, _)| name)
