@@ -5,7 +5,6 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use crate::candidates::library::Builder;
 use crate::effect::{CandidateEffect, EffectCard, Role, View, curve};
 
 /// Starting values that share which bounds are absent and which variants are chosen.
@@ -31,37 +30,17 @@ pub(crate) struct Grid {
 /// Grids by effect, source, and whether it acts on its own path.
 pub(crate) type Grids = BTreeMap<(&'static str, usize, bool), Arc<Grid>>;
 
-impl Builder<'_, '_> {
-    /// The grid of an effect of one source.
-    pub(crate) fn grid(
-        &mut self,
-        name: &'static str,
+impl Grid {
+    /// The grid of an effect of a coordinate that took these values, as `view` sees them.
+    pub fn new(
         shape: &dyn CandidateEffect,
         card: &EffectCard,
-        (source, own_path): (usize, bool),
-    ) -> Arc<Grid> {
-        let key = (name, source, own_path);
-        if let Some(known) = self.grids.as_ref().and_then(|grids| grids.get(&key)) {
-            return known.clone();
-        }
-        let made = Arc::new(self.made(shape, card, (source, own_path)));
-        if let Some(grids) = &mut self.grids {
-            grids.insert(key, made.clone());
-        }
-        made
-    }
-
-    fn made(
-        &self,
-        shape: &dyn CandidateEffect,
-        card: &EffectCard,
-        (source, own_path): (usize, bool),
-    ) -> Grid {
-        let view = self.nominal.view(source, source == self.time(), own_path, &self.lines);
-        let search = shape.search(&view);
+        (series, view): (&[f64], &View),
+    ) -> Self {
+        let search = shape.search(view);
         let fixed = |parameter: &str| {
             let own = card.own_path.iter().find(|(name, _)| *name == parameter);
-            own.filter(|_| own_path).map(|(_, value)| *value)
+            own.filter(|_| view.own_path).map(|(_, value)| *value)
         };
         let mut patterns: Vec<(Vec<i64>, Vec<Vec<f64>>)> = vec![];
         for mut start in search.starts {
@@ -91,33 +70,30 @@ impl Builder<'_, '_> {
                 parameters.clone().filter(|i| role(i) == Role::Coefficient && free(i)).collect();
             let refine: Vec<usize> =
                 parameters.filter(|i| role(i) == Role::Shape && free(i) && finite(i)).collect();
-            let size = self.shape_size(shape, card, &starts[0], &linear, source, &view);
+            let size = shape_size(shape, card, (&starts[0], &linear), (series, view));
             Pattern { starts, linear, refine, size }
         };
         let patterns = patterns.into_iter().map(of).collect();
-        Grid { patterns, min: search.min, max: search.max, thresholds: search.thresholds }
+        Self { patterns, min: search.min, max: search.max, thresholds: search.thresholds }
     }
+}
 
-    /// Root mean square of w along the baseline for a coefficient of 1.
-    fn shape_size(
-        &self,
-        shape: &dyn CandidateEffect,
-        card: &EffectCard,
-        start: &[f64],
-        linear: &[usize],
-        source: usize,
-        view: &View,
-    ) -> f64 {
-        let Some(&first) = linear.first() else { return 1.0 };
-        let fallback = if view.rms > 0.0 { view.rms } else { 1.0 };
-        if card.states > 0 {
-            // an oscillator shaken at its own frequency
-            let rate = card.position(card.properties.resonance).map_or(1.0, |i| start[i]);
-            return fallback * rate;
-        }
-        let mut parameters = start.to_vec();
-        parameters[first] = 1.0;
-        let size = crate::statistics::rms(&curve(shape, &parameters, self.nominal.series(source)));
-        if size > 0.0 && size.is_finite() { size } else { fallback }
+/// Root mean square of w along the baseline for a coefficient of 1.
+fn shape_size(
+    shape: &dyn CandidateEffect,
+    card: &EffectCard,
+    (start, linear): (&[f64], &[usize]),
+    (series, view): (&[f64], &View),
+) -> f64 {
+    let Some(&first) = linear.first() else { return 1.0 };
+    let fallback = if view.rms > 0.0 { view.rms } else { 1.0 };
+    if card.states > 0 {
+        // an oscillator shaken at its own frequency
+        let rate = card.position(card.properties.resonance).map_or(1.0, |i| start[i]);
+        return fallback * rate;
     }
+    let mut parameters = start.to_vec();
+    parameters[first] = 1.0;
+    let size = crate::statistics::rms(&curve(shape, &parameters, series));
+    if size > 0.0 && size.is_finite() { size } else { fallback }
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::candidates::candidate::{Candidate, Preference, Wire};
-use crate::candidates::grids::{Grids, Pattern};
+use crate::candidates::grids::{Grid, Grids, Pattern};
 use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Needs, Shape, SignRule};
 use crate::fit::problem::{Model, Problem};
 use crate::prepare::operating_range::Nominal;
@@ -217,6 +217,26 @@ impl Builder<'_, '_> {
                 twins: twins.clone(),
             });
         }
+    }
+
+    /// The grid of an effect of one source.
+    fn grid(
+        &mut self,
+        name: &'static str,
+        shape: &dyn CandidateEffect,
+        card: &EffectCard,
+        (source, own_path): (usize, bool),
+    ) -> Arc<Grid> {
+        let key = (name, source, own_path);
+        if let Some(known) = self.grids.as_ref().and_then(|grids| grids.get(&key)) {
+            return known.clone();
+        }
+        let view = self.nominal.view(source, source == self.time(), own_path, &self.lines);
+        let made = Arc::new(Grid::new(shape, card, (self.nominal.series(source), &view)));
+        if let Some(grids) = &mut self.grids {
+            grids.insert(key, made.clone());
+        }
+        made
     }
 
     /// Whether nothing says what a source is.

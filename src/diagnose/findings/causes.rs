@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::candidates::candidate::{Candidate, Wire};
-use crate::candidates::naming::title_of;
+use crate::candidates::naming::{parameter_effect, title_of};
 use crate::candidates::sums::by_likeness;
 use crate::error::DiagnoseError;
 use crate::findings::cause::{
@@ -13,7 +13,6 @@ use crate::findings::context::Context;
 use crate::findings::note::Note;
 use crate::fit::finished::Finished;
 use crate::fit::found::SET;
-use crate::fit::moved_parameters::parameter_effect;
 use crate::fit::problem::Added;
 use crate::validate::false_discovery::{either, on_test};
 use crate::validate::noise_floor::Floor;
