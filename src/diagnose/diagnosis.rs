@@ -9,12 +9,19 @@ use crate::system::System;
 /// Share of the estimation data that is fitted; the rest chooses.
 pub(super) const FIT: f64 = 0.7;
 /// Shares when the estimation data must serve as test data too.
-pub(super) const FIT_OF_ALL: f64 = 0.6;
-pub(super) const TEST_OF_ALL: f64 = 0.2;
+const FIT_OF_ALL: f64 = 0.6;
+const TEST_OF_ALL: f64 = 0.2;
+/// Share of what then is no test data that is fitted.
+pub(super) const FIT_OF_REST: f64 = FIT_OF_ALL / (1.0 - TEST_OF_ALL);
 
 /// First sample of the part of a record that is kept for the test where there is no other.
 pub(super) fn kept_from(record: &Record) -> usize {
     ((1.0 - TEST_OF_ALL) * record.len() as f64) as usize
+}
+
+/// Records without what is kept for the test where there is no other.
+pub(super) fn without_test(records: &[Record]) -> Vec<Record> {
+    records.iter().map(|record| record.slice(0..kept_from(record))).collect()
 }
 
 /// Finds what a model's simulation gets wrong on a record, and names it.

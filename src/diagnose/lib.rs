@@ -22,6 +22,7 @@ mod fit;
 mod innovations;
 mod memory;
 mod mended;
+mod names;
 mod plan;
 mod prepare;
 mod run;

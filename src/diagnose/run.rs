@@ -3,12 +3,13 @@
 use std::time::Instant;
 
 use super::data_faults::coarse;
-use super::diagnosis::{Diagnosis, FIT, FIT_OF_ALL, TEST_OF_ALL, kept_from};
+use super::diagnosis::{Diagnosis, FIT, FIT_OF_REST, kept_from, without_test};
 use super::error::DiagnoseError;
 use super::findings::context::Source;
 use super::findings::distortion::distortion;
 use super::findings::finding::{Finding, RecordFacts, Verdict};
 use super::findings::hand_over::{Around, Looked, Searched};
+use super::fit::finished::Finished;
 use super::innovations;
 use super::mended::Mended;
 use super::prepare::integration_error::unresolved;
@@ -21,6 +22,16 @@ use super::validate::test_error::{Counted, TestData};
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run};
 use crate::watch::Watch;
+
+/// What was found, and the records that it was found on.
+pub(super) struct Chosen<'a> {
+    /// All samples that were used.
+    pub whole: Prepared<'a>,
+    /// The windows of them that were looked at, where records are too long.
+    pub looked_at: Option<Prepared<'a>>,
+    pub chosen: Finished,
+    pub other: Option<Finished>,
+}
 
 impl Diagnosis<'_> {
     pub(super) fn check_names(&self) -> Result<(), DiagnoseError> {
@@ -173,32 +184,41 @@ impl Diagnosis<'_> {
                 (records, TestData { records: vec![record.clone()], counted }, FIT)
             }
             None => {
-                kept = records.iter().map(|r| r.slice(0..kept_from(r))).collect();
+                kept = without_test(records);
                 let counted = Counted::From(records.iter().map(kept_from).collect());
                 let test = TestData { records: records.to_vec(), counted };
-                (&kept[..], test, FIT_OF_ALL / (1.0 - TEST_OF_ALL))
+                (&kept[..], test, FIT_OF_REST)
             }
         };
-        let mut whole = Prepared::new(self.system, used, share)?.within(self.memory);
-        let windows = windows(used);
-        let mut looked_at = None;
-        let (chosen, other) = match &windows {
-            None => innovations::search(&mut whole, &self.allowed, most, watch)?,
-            Some(windows) => {
-                let mut part = Prepared::new(self.system, windows, share)?.within(self.memory);
-                let (chosen, other) = innovations::search(&mut part, &self.allowed, most, watch)?;
-                looked_at = Some(part);
-                watch.report(0.95, "fitting to all samples");
-                let chosen = innovations::finish(&mut whole, &self.allowed, chosen)?;
-                (chosen, other.map(|other| whole.finish(&self.allowed, other)).transpose()?)
-            }
-        };
+        let Chosen { whole, looked_at, chosen, other } = self.chosen(used, share, most, watch)?;
         watch.report(0.97, "measuring the gain");
         let firsts = firsts(records);
         let (start, fixed) = (&whole.start, &self.allowed.fixed);
         let from = Source { start, test: &test, used, firsts: &firsts, fixed };
         let searched = whole.context().findings(&chosen, other.as_ref(), &from)?;
         Ok(innovations::completed(looked_at.as_ref().unwrap_or(&whole), &chosen, searched))
+    }
+
+    /// What a search finds on the samples that it may use, of each record a share to fit; fitted to all
+    /// of them.
+    pub(super) fn chosen(
+        &self,
+        used: &[Record],
+        share: f64,
+        most: usize,
+        watch: &dyn Watch,
+    ) -> Result<Chosen<'_>, DiagnoseError> {
+        let mut whole = Prepared::new(self.system, used, share)?.within(self.memory);
+        let Some(windows) = windows(used) else {
+            let (chosen, other) = innovations::search(&mut whole, &self.allowed, most, watch)?;
+            return Ok(Chosen { whole, looked_at: None, chosen, other });
+        };
+        let mut part = Prepared::new(self.system, &windows, share)?.within(self.memory);
+        let (chosen, other) = innovations::search(&mut part, &self.allowed, most, watch)?;
+        watch.report(0.95, "fitting to all samples");
+        let chosen = innovations::finish(&mut whole, &self.allowed, chosen)?;
+        let other = other.map(|other| whole.finish(&self.allowed, other)).transpose()?;
+        Ok(Chosen { whole, looked_at: Some(part), chosen, other })
     }
 
     /// Says at which sample a baseline leaves the finite numbers, if it does.

@@ -25,16 +25,21 @@ impl Isa {
     ///
     /// The environment variable `LACUNA_ISA` (`baseline`, `avx2`, `avx512`) lowers it,
     /// for measurements.
+    #[inline]
     pub fn detect() -> Self {
+        // asked before every kernel: one load and a comparison, without a call
         static FOUND: OnceLock<Isa> = OnceLock::new();
-        *FOUND.get_or_init(|| {
-            let has = Self::of_processor();
-            match std::env::var("LACUNA_ISA").as_deref() {
-                Ok("baseline") => Self::Baseline,
-                Ok("avx2") => has.min(Self::Avx2),
-                _ => has,
-            }
-        })
+        *FOUND.get_or_init(Self::look)
+    }
+
+    #[cold]
+    fn look() -> Self {
+        let has = Self::of_processor();
+        match std::env::var("LACUNA_ISA").as_deref() {
+            Ok("baseline") => Self::Baseline,
+            Ok("avx2") => has.min(Self::Avx2),
+            _ => has,
+        }
     }
 
     #[cfg(target_arch = "x86_64")]

@@ -32,6 +32,7 @@ pub fn simulate<R: EffectNumber>(
     seen: bool,
 ) -> Vec<Vec<Track>> {
     let Some(mut run) = Run::<R>::new(law, groups) else { return vec![] };
+    run.seen = seen;
     let n = drive.len();
     let base = groups[0].0;
     let blank = |count: usize| vec![vec![f64::NAN; n]; count];
@@ -48,10 +49,11 @@ pub fn simulate<R: EffectNumber>(
         run.clock = drive.clocks.get(number).copied().unwrap_or(0.0);
         for k in segment.clone() {
             run.sample(drive, k, segment.end, &mut tracks);
-            if tracks.iter().flatten().all(|track| track.diverged_at.is_some()) {
+            if run.is_lost(&tracks) {
                 break;
             }
         }
+        run.hand_out(&mut tracks);
     }
     run.last(&mut tracks);
     tracks
@@ -92,6 +94,12 @@ struct Run<'a, R> {
     ramp: Vec<R>,
     ramped: bool,
     y: Vec<R>,
+    /// Outputs of the last samples, the first of them, and whether sources are written down too.
+    outputs: Vec<R>,
+    outputs_from: usize,
+    seen: bool,
+    /// Whether some lane diverged.
+    lost: bool,
     sums: Vec<R>,
     exact: Option<Exact<R>>,
     /// Whether any effect acts inside the stages.
@@ -156,6 +164,10 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             ramp: zeros(n.w),
             ramped: law.ramped(),
             y: zeros(n.y),
+            outputs: vec![],
+            outputs_from: 0,
+            seen: false,
+            lost: false,
             sums: zeros(1),
             first: true,
             clock: 0.0,
@@ -193,7 +205,9 @@ impl<'a, R: EffectNumber> Run<'a, R> {
     fn begin(&mut self, drive: &Drive, k: usize, end: usize, j: usize) {
         let (base, h) = (self.base, self.base.step());
         self.time = self.clock + (k as f64 * base.sampling_time + j as f64 * h);
-        self.drift(self.time);
+        if self.drifting || self.drifted.is_none() {
+            self.drift(self.time);
+        }
         self.drive(drive, k, end, j);
         for group in &mut self.groups {
             group.inputs(&mut self.u, h);
@@ -304,7 +318,9 @@ impl<'a, R: EffectNumber> Run<'a, R> {
 
     /// Rates of all states at a trial state: stage `i`, with the inputs at `slot`.
     fn stage(&mut self, i: usize, slot: usize, time: f64) {
-        self.drift(time);
+        if self.drifting || self.drifted.is_none() {
+            self.drift(time);
+        }
         stage(self, i, slot, time);
     }
 

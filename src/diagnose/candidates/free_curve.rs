@@ -79,8 +79,7 @@ impl Drawing<'_, '_> {
     fn places(&self) -> Vec<Vec<Arc<Candidate>>> {
         let base = self.problem.base.clone();
         let lines = vec![];
-        let mut builder =
-            Builder { problem: self.problem, nominal: self.nominal, lines, found: vec![] };
+        let mut builder = Builder::new(self.problem, self.nominal, lines);
         let mut spots: Vec<(Spot, Vec<(usize, f64)>)> = vec![];
         let groups = builder.channels();
         let sources = builder.sources();

@@ -60,8 +60,7 @@ impl Drawing<'_, '_> {
         let mut left = at.now.clone();
         project(&at.basis, &mut left);
         let lines = vec![];
-        let mut builder =
-            Builder { problem: self.problem, nominal: self.nominal, lines, found: vec![] };
+        let mut builder = Builder::new(self.problem, self.nominal, lines);
         let groups = builder.channels();
         let moving: Vec<Moving> =
             builder.sources().into_iter().filter_map(|source| self.moving(source)).collect();

@@ -3,10 +3,9 @@
 use std::sync::Arc;
 
 use crate::candidates::candidate::{Candidate, Preference, Wire};
+use crate::candidates::grids::{Grid, Grids, Pattern};
 use crate::candidates::stiffness::Stiffness;
-use crate::effect::{
-    CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, Shape, SignRule, View, curve,
-};
+use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Needs, Shape, SignRule};
 use crate::fit::problem::{Model, Problem};
 use crate::prepare::operating_range::Nominal;
 use crate::register;
@@ -45,6 +44,8 @@ pub(crate) struct Builder<'a, 'b> {
     pub(crate) nominal: &'a Nominal,
     pub(crate) lines: Vec<f64>,
     pub(crate) found: Vec<Candidate>,
+    /// Grids that were made, where an effect always has the same.
+    pub(crate) grids: Option<Grids>,
 }
 
 /// All candidates for a model, given its residual lines (rad/s).
@@ -55,7 +56,8 @@ pub(crate) fn library(
     lines: Vec<f64>,
     allowed: &Allowed,
 ) -> Vec<Arc<Candidate>> {
-    let mut builder = Builder { problem, nominal, lines, found: vec![] };
+    let mut builder = Builder::new(problem, nominal, lines);
+    builder.grids = Some(Grids::default());
     let groups = builder.channels();
     let sources = builder.sources();
     let registered = register::effects().into_iter().map(|(card, shape)| (card.name, shape));
@@ -86,6 +88,12 @@ pub(crate) fn library(
         }
     }
     builder.found.into_iter().map(Arc::new).collect()
+}
+
+impl<'a, 'b> Builder<'a, 'b> {
+    pub(crate) fn new(problem: &'a Problem<'b>, nominal: &'a Nominal, lines: Vec<f64>) -> Self {
+        Self { problem, nominal, lines, found: vec![], grids: None }
+    }
 }
 
 impl Builder<'_, '_> {
@@ -152,37 +160,13 @@ impl Builder<'_, '_> {
         let base = self.problem.base.clone();
         let time = self.time();
         let source = spot.source.unwrap_or(time);
-        let view = self.nominal.view(source, source == time, spot.own_path, &self.lines);
-        let search = shape.search(&view);
+        let grid = self.grid(name, shape, card, (source, spot.own_path));
         let stiffness = match card.needs == Needs::Velocity && push != 0.0 {
             true => Stiffness::new(push, self.nominal.theta(), |theta| {
                 self.nominal.push_at(self.problem, spot.target, source, theta)
             }),
             false => Stiffness::default(),
         };
-        let fixed = |parameter: &str| {
-            let own = card.own_path.iter().find(|(name, _)| *name == parameter);
-            own.filter(|_| spot.own_path).map(|(_, value)| *value)
-        };
-        let mut patterns: Vec<(Vec<i64>, Vec<Vec<f64>>)> = vec![];
-        for mut start in search.starts {
-            for (value, parameter) in start.iter_mut().zip(&card.parameters) {
-                *value = fixed(&parameter.name).unwrap_or(*value);
-            }
-            let pattern: Vec<i64> = start
-                .iter()
-                .zip(&card.parameters)
-                .map(|(value, parameter)| match parameter.role {
-                    _ if value.is_infinite() => i64::MAX,
-                    Role::Choice => value.round() as i64,
-                    _ => 0,
-                })
-                .collect();
-            match patterns.iter_mut().find(|(known, _)| *known == pattern) {
-                Some((_, starts)) => starts.push(start),
-                None => patterns.push((pattern, vec![start])),
-            }
-        }
         let sign = match card.sign {
             SignRule::Any => 0.0,
             SignRule::Opposing { polarity } => -push.signum() * f64::from(polarity),
@@ -194,16 +178,7 @@ impl Builder<'_, '_> {
         let source_signal = &base.sources.entries[source].0;
         let simple = card.properties.of_an_instrument;
         let preference = self.preference(spot.target);
-        for (_, starts) in patterns {
-            let role = |i: &usize| card.parameters[*i].role;
-            let free = |i: &usize| fixed(&card.parameters[*i].name).is_none();
-            let finite = |i: &usize| starts[0][*i].is_finite();
-            let parameters = 0..card.parameters.len();
-            let linear: Vec<usize> =
-                parameters.clone().filter(|i| role(i) == Role::Coefficient && free(i)).collect();
-            let refine: Vec<usize> =
-                parameters.filter(|i| role(i) == Role::Shape && free(i) && finite(i)).collect();
-            let size = self.shape_size(shape, card, &starts[0], &linear, source, &view);
+        for Pattern { starts, linear, refine, size } in grid.patterns.iter().cloned() {
             let natural = self.nominal.natural[spot.target];
             let on_path = matches!(target_origin, Origin::Input(_) | Origin::Output(_));
             let probe = match card.mechanism {
@@ -233,9 +208,9 @@ impl Builder<'_, '_> {
                 linear,
                 refine,
                 starts,
-                min: search.min.clone(),
-                max: search.max.clone(),
-                thresholds: search.thresholds,
+                min: grid.min.clone(),
+                max: grid.max.clone(),
+                thresholds: grid.thresholds,
                 sign,
                 probe,
                 push,
@@ -249,6 +224,26 @@ impl Builder<'_, '_> {
                 twins: twins.clone(),
             });
         }
+    }
+
+    /// The grid of an effect of one source.
+    fn grid(
+        &mut self,
+        name: &'static str,
+        shape: &dyn CandidateEffect,
+        card: &EffectCard,
+        (source, own_path): (usize, bool),
+    ) -> Arc<Grid> {
+        let key = (name, source, own_path);
+        if let Some(known) = self.grids.as_ref().and_then(|grids| grids.get(&key)) {
+            return known.clone();
+        }
+        let view = self.nominal.view(source, source == self.time(), own_path, &self.lines);
+        let made = Arc::new(Grid::new(shape, card, (self.nominal.series(source), &view)));
+        if let Some(grids) = &mut self.grids {
+            grids.insert(key, made.clone());
+        }
+        made
     }
 
     /// Whether nothing says what a source is.
@@ -267,28 +262,5 @@ impl Builder<'_, '_> {
     /// Whether a source is a velocity, as declared or found.
     pub(crate) fn is_velocity(&self, source: usize) -> bool {
         self.quantity(source).is_some_and(|quantity| quantity.is_velocity())
-    }
-
-    /// Root mean square of w along the baseline for a coefficient of 1.
-    pub(crate) fn shape_size(
-        &self,
-        shape: &dyn CandidateEffect,
-        card: &EffectCard,
-        start: &[f64],
-        linear: &[usize],
-        source: usize,
-        view: &View,
-    ) -> f64 {
-        let Some(&first) = linear.first() else { return 1.0 };
-        let fallback = if view.rms > 0.0 { view.rms } else { 1.0 };
-        if card.states > 0 {
-            // an oscillator shaken at its own frequency
-            let rate = card.position(card.properties.resonance).map_or(1.0, |i| start[i]);
-            return fallback * rate;
-        }
-        let mut parameters = start.to_vec();
-        parameters[first] = 1.0;
-        let size = crate::statistics::rms(&curve(shape, &parameters, self.nominal.series(source)));
-        if size > 0.0 && size.is_finite() { size } else { fallback }
     }
 }

@@ -4,6 +4,7 @@ pub(crate) mod candidate;
 pub(crate) mod coordinate;
 pub(crate) mod free_curve;
 pub(crate) mod free_surface;
+pub(crate) mod grids;
 pub(crate) mod law_regression;
 pub(crate) mod library;
 pub(crate) mod naming;

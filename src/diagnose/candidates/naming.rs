@@ -64,3 +64,10 @@ pub(crate) fn title_of(effect: &str) -> String {
     let own = register::effects().into_iter().find(|(card, _)| card.name == effect);
     own.map_or_else(|| effect.replace('_', " "), |(_, shape)| shape.title(&Named::default()))
 }
+
+/// The registered effect that is another value of a parameter.
+pub(crate) fn parameter_effect() -> &'static str {
+    let own = register::effects().into_iter();
+    let own = own.map(|(card, effect)| (card.name, effect.card().mechanism));
+    own.into_iter().find(|(_, by)| *by == Mechanism::Parameter).map_or("", |(name, _)| name)
+}

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::candidates::candidate::{Candidate, Wire};
-use crate::candidates::naming::title_of;
+use crate::candidates::naming::{parameter_effect, title_of};
 use crate::candidates::sums::by_likeness;
 use crate::error::DiagnoseError;
 use crate::findings::cause::{
@@ -44,6 +44,29 @@ impl Context<'_, '_> {
         let mut causes = places.map(at_place).collect::<Result<Vec<_>, _>>()?;
         causes.extend(self.moved(chosen, by)?);
         Ok(causes)
+    }
+
+    /// The same causes by their names alone, with the names that cannot be told from them; nothing is
+    /// measured of them.
+    pub fn names(&self, chosen: &Finished) -> Vec<Cause> {
+        let model = &chosen.fitted.model;
+        let is_law = |own: &Vec<usize>| !model.added[own[0]].cause.is_known_limit();
+        let law = |own| {
+            let own = by_likeness(self.problem, self.nominal, model, own);
+            let cause = &model.added[own[0]].cause;
+            let laws = own.iter().map(|&i| model.added[i].cause.name()).collect();
+            let (effect, into, of) = cause.name();
+            let (indistinguishable, _) =
+                alternatives(cause, &chosen.found.slots[own[0]], 0.0, laws);
+            Cause { effect, into, of, indistinguishable, ..Cause::default() }
+        };
+        let laws = model.places().into_iter().filter(is_law).map(law);
+        let moved = chosen.moved.iter().map(|moved| Cause {
+            effect: parameter_effect().into(),
+            into: moved.name.clone(),
+            ..Cause::default()
+        });
+        laws.chain(moved).collect()
     }
 
     /// The laws of one place as one cause.

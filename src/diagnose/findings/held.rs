@@ -108,7 +108,7 @@ impl Context<'_, '_> {
             parameter.fixed || fixed.contains(&parameter.name)
         };
         let (problem, nominal) = (self.problem, self.nominal);
-        let mut builder = Builder { problem, nominal, lines: vec![], found: vec![] };
+        let mut builder = Builder::new(problem, nominal, vec![]);
         for (card, shape) in register::effects() {
             let declared = shape.card();
             if declared.places.parameter {

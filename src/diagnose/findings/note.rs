@@ -45,6 +45,14 @@ pub enum Note {
         /// Memory that all laws would take, about.
         whole: Memory,
     },
+    /// Simulating all laws was too much work: they were ranked to first order, and the leading ones
+    /// simulated.
+    LawsRanked {
+        /// Laws that were only ranked.
+        laws: usize,
+        /// Laws there are.
+        of: usize,
+    },
     /// What the simulation leaves of an output is no more than its own error, of the integrator and
     /// of rounding.
     Unresolved {

@@ -68,7 +68,10 @@ impl Context<'_, '_> {
         }
         if let Some(LeftOut { laws, of, whole }) = chosen.found.left_out {
             let memory = self.problem.memory;
-            notes.push(Note::LawsLeftOut { laws, of, memory, whole });
+            notes.push(match whole {
+                Some(whole) => Note::LawsLeftOut { laws, of, memory, whole },
+                None => Note::LawsRanked { laws, of },
+            });
         }
         if chosen.found.full {
             notes.push(Note::MostCauses);

@@ -61,14 +61,15 @@ impl Slot {
     }
 }
 
-/// Laws that memory did not hold.
+/// Laws that were judged alone only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LeftOut {
     /// How many, of how many.
     pub laws: usize,
     pub of: usize,
-    /// What all of them would take, about.
-    pub whole: Memory,
+    /// What all of them would take, about, where memory did not hold them; else simulating them was too
+    /// much work.
+    pub whole: Option<Memory>,
 }
 
 /// What a search ended with.
@@ -77,7 +78,7 @@ pub(crate) struct Found {
     pub slots: Vec<Slot>,
     /// The ranking of candidates about the model without causes.
     pub first: Option<Screen>,
-    /// Laws that memory did not hold.
+    /// Laws that were judged alone only.
     pub left_out: Option<LeftOut>,
     /// Samples flagged as spikes, per output.
     pub spikes: Vec<Vec<usize>>,

@@ -1,7 +1,6 @@
 //! Parameters that a fit moved beyond their standard errors, as causes.
 
-use crate::candidates::naming::title_of;
-use crate::effect::Mechanism;
+use crate::candidates::naming::{parameter_effect, title_of};
 use crate::error::DiagnoseError;
 use crate::findings::cause::{Cause, LawPart, Site, Value, Wording};
 use crate::findings::causes::Scores;
@@ -9,16 +8,8 @@ use crate::findings::context::Context;
 use crate::fit::finished::Finished;
 use crate::fit::problem::Model;
 use crate::fit::refit::{Refit, refit};
-use crate::register;
 use crate::validate::false_discovery::{either, on_test};
 use crate::validate::test_error::removed;
-
-/// The registered effect that is another value of a parameter.
-fn parameter_effect() -> &'static str {
-    let own = register::effects().into_iter();
-    let own = own.map(|(card, effect)| (card.name, effect.card().mechanism));
-    own.into_iter().find(|(_, by)| *by == Mechanism::Parameter).map_or("", |(name, _)| name)
-}
 
 impl Context<'_, '_> {
     /// Parameters that the chosen track moved, as causes.

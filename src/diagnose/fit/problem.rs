@@ -161,6 +161,16 @@ impl<'a> Problem<'a> {
         self.drive.len()
     }
 
+    /// What drives the part that is fitted.
+    pub fn fit_drive(&self) -> &Drive {
+        &self.fit_drive
+    }
+
+    /// Samples that are simulated for the part that is fitted.
+    pub fn simulated(&self) -> Vec<usize> {
+        self.fit_drive.segments.iter().cloned().flatten().collect()
+    }
+
     /// Simulations whose outputs memory holds side by side.
     pub fn at_once(&self, span: Span) -> usize {
         let samples = if span == Span::Fit { self.fit_drive.len() } else { self.len() };
@@ -326,8 +336,20 @@ impl<'a> Problem<'a> {
         self.simulate_all(&[model], grain).swap_remove(0)
     }
 
+    /// The outputs of a model over the whole record, where they are known.
+    pub fn known_run(&self, model: &Model, grain: Grain) -> Simulated {
+        self.remembered.recall(model, self.plainest(grain)).flatten()
+    }
+
+    /// The grain by another name, where its steps are the integrator's own.
+    fn plainest(&self, grain: Grain) -> Grain {
+        let is_own = self.base_of(grain).substeps == self.base.substeps;
+        if is_own { Grain::Fine } else { grain }
+    }
+
     /// Outputs of several models over the whole record.
     pub fn simulate_all(&self, models: &[&Model], grain: Grain) -> Vec<Simulated> {
+        let grain = self.plainest(grain);
         let mut answers: Vec<Option<Simulated>> =
             models.iter().map(|model| self.remembered.recall(model, grain)).collect();
         let open: Vec<usize> = (0..models.len()).filter(|&i| answers[i].is_none()).collect();

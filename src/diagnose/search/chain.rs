@@ -99,7 +99,8 @@ fn one_round(study: &mut Study<'_, '_>, best: Fit, round: usize, last: bool) -> 
     let is_stale = study.left_out.is_some() && study.about != causes(&ground.fit);
     if round == 0 || is_stale {
         drop(std::mem::take(&mut items));
-        let made = dictionary(study.problem, &ground.about(), &study.candidates, None, study.watch);
+        let with = (&*study.problem, study.nominal);
+        let made = dictionary(with, &ground.about(), &study.candidates, None, study.watch);
         items = made.items;
         study.left_out = made.left_out.or(study.left_out);
         study.about = causes(&ground.fit);
@@ -156,9 +157,10 @@ fn refresh(
         let one = study.candidates.iter().enumerate().filter(|(_, cause)| cause.unknowns() == 1);
         wanted.extend(one.filter(|(_, cause)| cause.starts.len() == 1).map(|(c, _)| (c, 0)));
     }
-    let fresh =
-        dictionary(study.problem, &ground.about(), &study.candidates, Some(&wanted), study.watch)
-            .items;
+    let with = (&*study.problem, study.nominal);
+    let made = dictionary(with, &ground.about(), &study.candidates, Some(&wanted), study.watch);
+    let fresh = made.items;
+    let wanted = made.looked_at.unwrap_or(wanted);
     let count = fresh.len();
     let old = std::mem::replace(items, fresh);
     let room = room(study.problem).saturating_sub(items.iter().map(Item::bytes).sum());

@@ -9,12 +9,14 @@ use std::sync::Arc;
 
 pub(super) use super::item::{About, Item};
 use super::leading::Leading;
+use super::ranked::ranked;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::probes::{Probe, Sharing, limit, steer};
 use crate::fit::found::LeftOut;
 use crate::fit::problem::{Grain, Part, Problem, Span};
 use crate::fit::step_size::ROUGH;
 use crate::memory::Memory;
+use crate::prepare::operating_range::Nominal;
 use crate::statistics::{deviation, dot, project, rms};
 use crate::watch::Watch;
 
@@ -39,10 +41,12 @@ pub(super) fn spread(problem: &Problem<'_>) -> f64 {
     ((0..problem.y.len()).map(of).sum::<f64>() / problem.y.len().max(1) as f64).sqrt()
 }
 
-/// Grid points, and the laws that memory did not hold.
+/// Grid points, and the laws that memory or time did not allow for.
 pub(super) struct Dictionary {
     pub items: Vec<Item>,
     pub left_out: Option<LeftOut>,
+    /// The grid points that were looked at, where not all were that were wanted.
+    pub looked_at: Option<BTreeSet<(usize, usize)>>,
 }
 
 /// Bytes that columns may take; the whitened ones of a metric take as much, and so does the rest.
@@ -52,9 +56,10 @@ pub(super) fn room(problem: &Problem<'_>) -> usize {
 
 /// All grid points about a model, or those that are `wanted`. Where memory does not hold them, they are
 /// made some candidates at a time and those stay that explain most of the residual, each alone. Where
-/// somebody asks to stop, the rest is not made.
+/// simulating them is too much work, those are made that are ranked first. Where somebody asks to stop,
+/// the rest is not made.
 pub(super) fn dictionary(
-    problem: &Problem<'_>,
+    (problem, nominal): (&Problem<'_>, &Nominal),
     about: &About<'_>,
     candidates: &[Arc<Candidate>],
     wanted: Option<&BTreeSet<(usize, usize)>>,
@@ -88,7 +93,13 @@ pub(super) fn dictionary(
         }
     }
     let (room, column) = (room(problem), 8 * residual.len());
-    let (all, of) = (probes.len(), wanted_laws(&probes));
+    let of = wanted_laws(&probes);
+    let looked_at = ranked((problem, nominal), about, candidates, &probes, room, watch);
+    if let Some(leading) = &looked_at {
+        probes.retain(|probe| leading.contains(&(probe.candidate, probe.start)));
+    }
+    let unseen = of - wanted_laws(&probes);
+    let all = probes.len();
     let at_once = match all * column > room {
         true => (room / 4 / column.max(1)).max(1),
         false => all.min(AT_ONCE),
@@ -103,7 +114,8 @@ pub(super) fn dictionary(
     }
     let laws = kept.left_out();
     let whole = Memory::of((SHARES as usize * all * column) as u64);
-    let left_out = (laws > 0).then_some(LeftOut { laws, of, whole });
+    let whole = (laws > 0).then_some(whole);
+    let left_out = (laws + unseen > 0).then_some(LeftOut { laws: laws + unseen, of, whole });
     let mut items = kept.items;
     if size > 2.0 * gentle {
         let mut probes = secants(about, &items, LARGE * size / gentle);
@@ -120,7 +132,7 @@ pub(super) fn dictionary(
         }));
     }
     items.retain(Item::is_finite);
-    Dictionary { items, left_out }
+    Dictionary { items, left_out, looked_at }
 }
 
 /// Grid points whose probes hit, by candidate.

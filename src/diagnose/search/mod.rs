@@ -15,6 +15,7 @@
 
 pub(crate) mod starts;
 
+mod adjoint;
 mod beam;
 mod begin;
 mod chain;
@@ -30,6 +31,8 @@ mod metric;
 mod moves;
 mod nameless;
 mod neighbours;
+mod open_loop;
+mod ranked;
 mod run;
 mod selected;
 mod study;

@@ -125,7 +125,34 @@ fn other_laws<'a>(
     found
 }
 
-/// The ranking of candidates before any fit.
+/// An item against what is left to explain.
+struct FirstOrder<'a> {
+    item: &'a Item,
+    explained: f64,
+    kappa: f64,
+    unit_effect: f64,
+    /// What it explains, sample by sample.
+    fitted: Vec<f64>,
+}
+
+/// What the first column of an item explains by itself of what the model's numbers leave; none where
+/// they imitate it, or its sign is another.
+fn first_order<'a>(item: &'a Item, left: &[f64], basis: &[Vec<f64>]) -> Option<FirstOrder<'a>> {
+    let mut own = item.columns[0].clone();
+    let before = dot(&own, &own);
+    project(basis, &mut own);
+    let size = dot(&own, &own);
+    let estimate = dot(&own, left) / size;
+    let counts = size > 1e-6 * before && !(item.sign * estimate < 0.0);
+    counts.then(|| {
+        let fitted: Vec<f64> = own.iter().map(|v| estimate * v).collect();
+        let explained = dot(&fitted, left);
+        let (kappa, unit_effect) = ((size / before).sqrt(), size.sqrt());
+        FirstOrder { item, explained, kappa, unit_effect, fitted }
+    })
+}
+
+/// The ranking of candidates before any fit, each by the grid point of it that explains most.
 pub(super) fn ranking(
     problem: &Problem<'_>,
     items: &[Item],
@@ -134,39 +161,31 @@ pub(super) fn ranking(
 ) -> Screen {
     let mut left = residual.to_vec();
     project(basis, &mut left);
-    let mut scored: Vec<Scored> = vec![];
+    let mut best: Vec<(f64, &Item)> = vec![];
     let mut at: std::collections::BTreeMap<usize, usize> = Default::default();
     for item in items {
-        let mut own = item.columns[0].clone();
-        let before = dot(&own, &own);
-        project(basis, &mut own);
-        let size = dot(&own, &own);
-        if !(size > 1e-6 * before) {
-            continue;
-        }
-        let estimate = dot(&own, &left) / size;
-        if item.sign * estimate < 0.0 {
-            continue;
-        }
-        let fitted: Vec<f64> = own.iter().map(|v| estimate * v).collect();
-        let new = Scored {
-            cause: item.cause.clone(),
-            explained: dot(&fitted, &left),
-            score: wald(&problem.per_sample(&fitted, &fitted), &problem.per_sample(&fitted, &left)),
-            kappa: (size / before).sqrt(),
-            unit_effect: size.sqrt(),
-        };
+        let Some(FirstOrder { explained, .. }) = first_order(item, &left, basis) else { continue };
         match at.get(&item.candidate) {
-            Some(&known) if scored[known].explained >= new.explained => {}
-            Some(&known) => scored[known] = new,
+            Some(&known) if best[known].0 >= explained => {}
+            Some(&known) => best[known] = (explained, item),
             None => {
-                at.insert(item.candidate, scored.len());
-                scored.push(new);
+                at.insert(item.candidate, best.len());
+                best.push((explained, item));
             }
         }
     }
-    scored.sort_by(|a, b| b.explained.total_cmp(&a.explained));
-    scored.truncate(LISTED);
+    best.sort_by(|a, b| b.0.total_cmp(&a.0));
+    best.truncate(LISTED);
+    // only of these it is asked how sure that is
+    let leading = best.iter().filter_map(|(_, item)| first_order(item, &left, basis));
+    let scored = leading.map(|FirstOrder { item, explained, kappa, unit_effect, fitted }| Scored {
+        cause: item.cause.clone(),
+        explained,
+        score: wald(&problem.per_sample(&fitted, &fitted), &problem.per_sample(&fitted, &left)),
+        kappa,
+        unit_effect,
+    });
+    let scored = scored.collect();
     let (total, columns) = (dot(&left, &left), items.len());
     Screen { scored, total, columns }
 }

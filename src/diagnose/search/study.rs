@@ -12,7 +12,7 @@ use crate::candidates::library::{Allowed, library};
 use crate::evidence::{Choices, NoiseModel, Stretches};
 use crate::fit::found::LeftOut;
 use crate::fit::nuisance::Nuisance;
-use crate::fit::problem::{Grain, Model, Part, Problem, Span};
+use crate::fit::problem::{Grain, Model, Part, Problem, Simulated, Span};
 use crate::fit::refit::Fitted;
 use crate::fit::segment_restart::restarted;
 use crate::prepare::input_dependence::dependence;
@@ -159,9 +159,17 @@ impl<'a, 'b> Study<'a, 'b> {
     fn judge_again(&mut self) {
         self.disturbance = Stretches::new(self.problem, Part::Fit);
         let keys: Vec<SetKey> = self.beam.within(JUDGED_AGAIN).map(Fit::key).collect();
-        let job = |key: &SetKey| self.problem.job(&self.beam.get(key)?.model, Grain::Coarse);
-        let jobs: Vec<_> = keys.iter().map(job).collect();
-        for (key, y) in keys.iter().zip(self.problem.run_built(&jobs, Span::Fit)) {
+        let model = |key: &SetKey| self.beam.get(key).map(|fit| &fit.model);
+        // what is known of the whole record is known of the part that is fitted
+        let mut runs: Vec<Simulated> =
+            keys.iter().map(|key| self.problem.known_run(model(key)?, Grain::Coarse)).collect();
+        let open: Vec<usize> = (0..keys.len()).filter(|&i| runs[i].is_none()).collect();
+        let job = |&i: &usize| self.problem.job(model(&keys[i])?, Grain::Coarse);
+        let jobs: Vec<_> = open.iter().map(job).collect();
+        for (i, y) in open.into_iter().zip(self.problem.run_built(&jobs, Span::Fit)) {
+            runs[i] = y;
+        }
+        for (key, y) in keys.iter().zip(runs) {
             let residual = y.map(|y| self.problem.residual(&y, Part::Fit));
             let finite = residual.filter(|r| r.iter().all(|v| v.is_finite()));
             match (finite, self.beam.get_mut(key)) {

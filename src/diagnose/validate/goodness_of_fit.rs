@@ -88,7 +88,9 @@ impl Diagnosis<'_> {
         watch: &dyn Watch,
     ) -> Result<GoodnessOfFit, DiagnoseError> {
         let mut finding = self.run_on(records, None, watch)?;
-        finding.notes.retain(|note| matches!(note, Note::LawsLeftOut { .. }));
+        let left_out =
+            |note: &Note| matches!(note, Note::LawsLeftOut { .. } | Note::LawsRanked { .. });
+        finding.notes.retain(left_out);
         let notes = finding.notes;
         let interrupted = finding.interrupted || watch.stopped();
         let (data_faults, of_the_model): (Vec<Cause>, Vec<Cause>) =

@@ -52,6 +52,8 @@ pub struct Rehearsal<'a> {
     scenes: Vec<Scene>,
     seed: u64,
     fingerprint: u64,
+    /// Whether held parameters are asked for as look-alikes.
+    held: bool,
 }
 
 impl<'a> Rehearsal<'a> {
@@ -75,7 +77,8 @@ impl<'a> Rehearsal<'a> {
             print = print.numbers(&signal.values);
         }
         let fingerprint = print.finish();
-        Ok(Self { diagnosis, finding, records, stage, scenes, seed, fingerprint })
+        let held = scene::asks_for_held(finding);
+        Ok(Self { diagnosis, finding, records, stage, scenes, seed, fingerprint, held })
     }
 
     /// Which scene each of `count` rehearsals is of: shares of [`SHARES`], scenes of one kind alike.
@@ -173,7 +176,7 @@ impl<'a> Rehearsal<'a> {
             }
             records.push(record);
         }
-        Ok(scene::sets(&self.diagnosis.run(&records, None, &())?))
+        Ok(scene::sets(&self.diagnosis.names(&records, self.held, &())?))
     }
 
     fn known(&self, folder: &Path, number: usize) -> Result<Option<Outcome>, StudyError> {

@@ -6,7 +6,7 @@ use crate::StudyError;
 use crate::data::Record;
 use crate::diagnose::{Cause, Diagnosis, Finding};
 use crate::evaluate::{Init, Run};
-use crate::exam::{Answer, Concealed};
+use crate::exam::Concealed;
 use crate::generate::rms;
 use crate::model::with_parameters;
 use crate::system::{Placed, System};
@@ -73,16 +73,23 @@ pub(super) fn named(finding: &Finding) -> Vec<String> {
     finding.in_the_machine().map(name_of).collect()
 }
 
-/// Sets of the causes in the machine, headlines first.
-pub(super) fn sets(finding: &Finding) -> Vec<Vec<String>> {
-    let causes = Answer::of(0, finding).causes.into_iter().filter(|c| c.rows.is_none());
-    let set = |cause: crate::exam::Answered| {
-        let mut all = vec![name(&cause.effect, &cause.into, cause.of.as_deref())];
-        let others = cause.indistinguishable.iter();
-        all.extend(others.map(|o| name(&o.effect, &o.into, o.of.as_deref())));
-        all
-    };
-    causes.map(set).collect()
+/// A name with those that cannot be told from it, the headline first.
+fn set(cause: &Cause) -> Vec<String> {
+    let others = cause.indistinguishable.iter();
+    let others = others.map(|o| name(&o.effect, &o.into, o.of.as_deref()));
+    std::iter::once(name_of(cause)).chain(others).collect()
+}
+
+/// Sets of causes, in their order.
+pub(super) fn sets<'a>(causes: impl IntoIterator<Item = &'a Cause>) -> Vec<Vec<String>> {
+    causes.into_iter().map(set).collect()
+}
+
+/// Whether a held parameter is among what a finding cannot tell from its causes, so that rehearsals
+/// have to ask for it too.
+pub(super) fn asks_for_held(finding: &Finding) -> bool {
+    let others = finding.in_the_machine().flat_map(|cause| &cause.indistinguishable);
+    others.into_iter().any(|other| finding.held.contains(&other.into))
 }
 
 /// The record along which everything is rehearsed.

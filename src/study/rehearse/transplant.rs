@@ -46,7 +46,8 @@ impl Stage<'_> {
             if names.first() == Some(&wanted) {
                 return Ok(Some(fitted.extended));
             }
-            let is_runner_up = sets(&fitted).first().is_some_and(|set| set.contains(&wanted));
+            let is_runner_up =
+                sets(fitted.in_the_machine()).first().is_some_and(|set| set.contains(&wanted));
             let at =
                 names.first().filter(|_| is_runner_up).and_then(|n| position(&fitted.extended, n));
             law = at.map(|at| fitted.extended.effects[at].clone());

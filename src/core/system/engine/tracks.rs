@@ -5,27 +5,60 @@ use super::super::lane::Track;
 use super::super::wiring::EffectNumber;
 use super::{BEYOND, Run};
 
+/// Samples that are written down at once.
+const AT_ONCE: usize = 64;
+
 impl<R: EffectNumber> Run<'_, R> {
-    /// Writes the outputs at sample `k` down.
+    /// Keeps the outputs at sample `k`, and writes them down where there are many.
     pub(super) fn store(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
-        let ny = self.base.sizes.y;
+        if self.outputs.is_empty() {
+            self.outputs_from = k;
+        }
+        self.outputs.extend_from_slice(&self.y);
+        if self.outputs.len() >= AT_ONCE * self.y.len() {
+            self.hand_out(tracks);
+        }
+        if self.seen {
+            self.see(k, tracks);
+        }
+    }
+
+    /// Writes the outputs down that are kept; nothing after the first that is no number.
+    pub(super) fn hand_out(&mut self, tracks: &mut [Vec<Track>]) {
+        let (ny, width) = (self.base.sizes.y, self.y.len());
+        let (from, rows) = (self.outputs_from, self.outputs.len() / width.max(1));
         for (group, tracks) in self.groups.iter().zip(tracks.iter_mut()) {
             for (l, track) in tracks.iter_mut().enumerate() {
                 if track.diverged_at.is_some() {
                     continue;
                 }
                 let (pack, lane) = (group.first + l / R::LANES, l % R::LANES);
+                let own = |o: usize| {
+                    let from = self.outputs.iter().skip(pack * ny + o).step_by(width);
+                    from.map(|y| y.lane(lane))
+                };
+                let mut end = rows;
+                for o in 0..ny {
+                    end = end.min(own(o).position(|y| !y.is_finite()).map_or(rows, |row| row + 1));
+                }
+                let mut last = true;
                 for (o, series) in track.y.iter_mut().enumerate() {
-                    series[k] = self.y[pack * ny + o].lane(lane);
-                    if !series[k].is_finite() {
-                        track.diverged_at = Some(k);
-                    }
+                    let to = &mut series[from..][..end];
+                    to.iter_mut().zip(own(o)).for_each(|(to, y)| *to = y);
+                    last &= to.last().is_none_or(|y| y.is_finite());
+                }
+                if !last {
+                    track.diverged_at = Some(from + end - 1);
+                    self.lost = true;
                 }
             }
         }
-        if tracks.iter().flatten().any(|track| !track.seen.is_empty()) {
-            self.see(k, tracks);
-        }
+        self.outputs.clear();
+    }
+
+    /// Whether all lanes diverged.
+    pub(super) fn is_lost(&self, tracks: &[Vec<Track>]) -> bool {
+        self.lost && tracks.iter().flatten().all(|track| track.diverged_at.is_some())
     }
 
     /// Records the table of sources.
@@ -48,8 +81,14 @@ impl<R: EffectNumber> Run<'_, R> {
     pub(super) fn watch(&mut self, k: usize, tracks: &mut [Vec<Track>]) {
         flush(&mut self.x, R::FLUSH);
         magnitude(&self.x, self.base.sizes.x, &mut self.sums);
-        for (group, tracks) in self.groups.iter_mut().zip(tracks) {
-            flush(&mut group.s, R::FLUSH);
+        self.groups.iter_mut().for_each(|group| flush(&mut group.s, R::FLUSH));
+        let near = |size: &R| (0..R::LANES).all(|lane| size.lane(lane) < BEYOND);
+        if self.sums.iter().all(near) {
+            return;
+        }
+        self.hand_out(tracks);
+        self.lost = true;
+        for (group, tracks) in self.groups.iter().zip(tracks) {
             for (l, track) in tracks.iter_mut().enumerate() {
                 let size = self.sums[group.first + l / R::LANES].lane(l % R::LANES);
                 if track.diverged_at.is_none() && !(size < BEYOND) {

@@ -1,0 +1,298 @@
+//! What a little of anything that enters does to a sum of outputs: the adjoint of the simulation.
+//!
+//! With x[k+1] = F(x[k], u[k], w[k]; theta), y[k] = h(x[k], u[k]; theta) and A = dF/dx, G = dF/dw,
+//! C = dh/dx along the course of a model, for all w at once and any weights rho:
+//!
+//! ```text
+//! sum_k rho[k]' dy[k] = sum_k g[k]' dw[k]
+//! g[k] = G[k]' lambda[k+1],   lambda[k] = A[k]' lambda[k+1] + C[k]' rho[k],   lambda[end] = 0
+//! ```
+//!
+//! (adjoint-state method: Plessix, Geophysical Journal International 167, 2006; Giles and Pierce, Flow,
+//! Turbulence and Combustion 65, 2000). What a law explains to first order is (r'dy)^2 / dy'dy: the sums
+//! are with the residual r and with random signs z, as E (z'dy)^2 = dy'dy (Hutchinson, Communications in
+//! Statistics 19, 1990).
+
+use super::item::About;
+use crate::data::Random;
+use crate::fit::problem::{Grain, Part, Problem};
+use crate::statistics::{dot, project};
+use crate::system::{Jacobian, Lane, Plan, Transition};
+use crate::watch::Watch;
+
+/// Sums with random signs: the size of a change is known within a third.
+const SIGNS: usize = 16;
+/// Sums of outputs that are followed back.
+const SUMS: usize = SIGNS + 1;
+/// Samples after which it is asked whether to stop.
+const AT_ONCE: usize = 128;
+
+/// Derivatives of one sample, row by row.
+#[derive(PartialEq)]
+struct Slopes {
+    a: Vec<f64>,
+    g: Vec<f64>,
+    c: Vec<f64>,
+}
+
+/// The course of a model over the samples that are fitted, and its adjoint.
+pub(super) struct Adjoint {
+    /// Every entry of the source table at every sample.
+    pub seen: Vec<Vec<f64>>,
+    /// The samples, and where segments begin among them.
+    samples: Vec<usize>,
+    pub begins: Vec<usize>,
+    /// Own channels and inputs: outputs come after them.
+    forces: usize,
+    /// Per place the weights of what enters there: sums one after the other, sample by sample.
+    weights: Vec<Vec<f64>>,
+    /// What a unit of every parameter does to the sums, and of its growth per second.
+    parameters: Option<[Vec<f64>; 2]>,
+    /// Sum of squares of what is to be explained.
+    total: f64,
+}
+
+/// Where something enters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Place {
+    /// Own channels, then inputs.
+    Force(usize),
+    Output(usize),
+}
+
+/// A model's course with its derivatives.
+struct Course {
+    slopes: Vec<Slopes>,
+    /// Which of them holds at each sample.
+    at: Vec<usize>,
+    states: Vec<Vec<f64>>,
+    n: usize,
+}
+
+impl Adjoint {
+    /// The adjoint about a model; `parameters` says whether those are asked for too. `None` where
+    /// derivatives take more than `room` bytes, the model cannot be followed, or somebody asks to stop.
+    pub fn new(
+        problem: &Problem<'_>,
+        about: &About<'_>,
+        parameters: bool,
+        room: usize,
+        watch: &dyn Watch,
+    ) -> Option<Self> {
+        let job = problem.job(about.model, Grain::Coarse)?;
+        let mut own = Self {
+            seen: vec![vec![]; job.plan.sources.entries.len()],
+            samples: problem.simulated(),
+            begins: vec![],
+            forces: job.plan.sizes.w + job.plan.sizes.u,
+            weights: vec![],
+            parameters: None,
+            total: 0.0,
+        };
+        let course = own.forward(problem, (&job.plan, &job.lane), room, watch)?;
+        let rho = own.sums(problem, about);
+        let lambda = own.backward(problem, &course, &rho, watch)?;
+        if parameters {
+            let model = (&*job.plan, &job.lane);
+            own.parameters =
+                Some(own.along_parameters(problem, model, (&course, &lambda, &rho), watch)?);
+        }
+        Some(own)
+    }
+
+    /// Follows the model.
+    fn forward(
+        &mut self,
+        problem: &Problem<'_>,
+        (plan, lane): (&Plan, &Lane),
+        room: usize,
+        watch: &dyn Watch,
+    ) -> Option<Course> {
+        let drive = problem.fit_drive();
+        let given = (&lane.theta[..], &lane.effect_values[..]);
+        let mut along = Transition::new(problem.system, plan, drive, given, false)?;
+        let (n, ny) = (along.states(), problem.y.len());
+        let mut to = along.jacobian();
+        let (mut c, mut y) = (vec![0.0; ny * n], vec![0.0; ny]);
+        let (still, mut seen) = (vec![0.0; self.forces], vec![0.0; self.seen.len()]);
+        let mut course = Course { slopes: vec![], at: vec![], states: vec![], n };
+        let bytes = 8 * (to.a.len() + to.g.len() + c.len());
+        for (number, segment) in drive.segments.iter().enumerate() {
+            self.begins.push(course.at.len());
+            along.start(number);
+            let mut x = lane.starts.get(number).or(lane.starts.last())?.clone();
+            x.resize(n, 0.0);
+            for k in segment.clone() {
+                if k % AT_ONCE == 0 && watch.stopped() {
+                    return None;
+                }
+                course.states.push(x.clone());
+                along.place(&x);
+                along.observe(k, &mut y, &mut c, &mut []);
+                along.see(&mut seen);
+                self.seen.iter_mut().zip(&seen).for_each(|(to, v)| to.push(*v));
+                along.advance(k, &still, &mut x, &mut to);
+                let now = Slopes { a: to.a.clone(), g: to.g.clone(), c: c.clone() };
+                // those of a linear model are the same all along
+                if course.slopes.last() != Some(&now) {
+                    course.slopes.push(now);
+                }
+                course.at.push(course.slopes.len() - 1);
+                if course.slopes.len() * bytes > room || !x.iter().all(|x| x.is_finite()) {
+                    return None;
+                }
+            }
+        }
+        Some(course)
+    }
+
+    /// Weights rho of all sums, sample by sample: outputs, and for each the sums.
+    fn sums(&mut self, problem: &Problem<'_>, about: &About<'_>) -> Vec<Vec<f64>> {
+        let mut left = about.residual.to_vec();
+        project(about.basis, &mut left);
+        self.total = dot(&left, &left);
+        let mut random = Random::new(1);
+        let mut all = vec![left];
+        all.extend((0..SIGNS).map(|_| {
+            let sign = |_: &f64| if random.below(2) == 0 { -1.0 } else { 1.0 };
+            let mut signs: Vec<f64> = about.residual.iter().map(sign).collect();
+            project(about.basis, &mut signs);
+            signs
+        }));
+        let ny = problem.y.len();
+        let count = about.residual.len() / ny.max(1);
+        let mut counted = problem.samples(Part::Fit).enumerate().peekable();
+        let mut rho = vec![vec![0.0; ny * SUMS]; self.samples.len()];
+        for (rho, &k) in rho.iter_mut().zip(&self.samples) {
+            let Some((at, _)) = counted.next_if(|(_, counted)| *counted == k) else { continue };
+            for o in 0..ny {
+                let over = problem.weight[o][k] / problem.scale[o];
+                (0..SUMS).for_each(|f| rho[o * SUMS + f] = over * all[f][o * count + at]);
+            }
+        }
+        rho
+    }
+
+    /// Follows the sums back; gives lambda after every sample.
+    fn backward(
+        &mut self,
+        problem: &Problem<'_>,
+        course: &Course,
+        rho: &[Vec<f64>],
+        watch: &dyn Watch,
+    ) -> Option<Vec<Vec<f64>>> {
+        let (n, forces, ny, count) = (course.n, self.forces, problem.y.len(), rho.len());
+        self.weights = vec![vec![0.0; SUMS * count]; forces + ny];
+        let mut lambda = vec![0.0; n * SUMS];
+        let mut all = vec![vec![]; count];
+        for at in (0..count).rev() {
+            if at % AT_ONCE == 0 && watch.stopped() {
+                return None;
+            }
+            if self.begins.binary_search(&(at + 1)).is_ok() {
+                lambda.fill(0.0);
+            }
+            let Slopes { a, g, c } = &course.slopes[course.at[at]];
+            let (mut into, mut before) = (vec![0.0; forces * SUMS], vec![0.0; n * SUMS]);
+            for i in 0..n {
+                let own = &lambda[i * SUMS..][..SUMS];
+                spread(&mut into, &g[i * forces..][..forces], own);
+                spread(&mut before, &a[i * n..][..n], own);
+            }
+            for o in 0..ny {
+                spread(&mut before, &c[o * n..][..n], &rho[at][o * SUMS..][..SUMS]);
+            }
+            for (place, weights) in self.weights.iter_mut().enumerate() {
+                let from = match place < forces {
+                    true => &into[place * SUMS..][..SUMS],
+                    false => &rho[at][(place - forces) * SUMS..][..SUMS],
+                };
+                (0..SUMS).for_each(|f| weights[f * count + at] = from[f]);
+            }
+            all[at] = std::mem::replace(&mut lambda, before);
+        }
+        Some(all)
+    }
+
+    /// What a unit of every parameter, and of its growth per second, does to the sums.
+    fn along_parameters(
+        &self,
+        problem: &Problem<'_>,
+        (plan, lane): (&Plan, &Lane),
+        (course, lambda, rho): (&Course, &[Vec<f64>], &[Vec<f64>]),
+        watch: &dyn Watch,
+    ) -> Option<[Vec<f64>; 2]> {
+        let drive = problem.fit_drive();
+        let given = (&lane.theta[..], &lane.effect_values[..]);
+        let mut along = Transition::new(problem.system, plan, drive, given, true)?;
+        let (n, ny, nt) = (course.n, problem.y.len(), lane.theta.len());
+        let mut to: Jacobian = along.jacobian();
+        let (mut c, mut y, mut h) = (vec![0.0; ny * n], vec![0.0; ny], vec![0.0; ny * nt]);
+        let (still, mut x) = (vec![0.0; self.forces], vec![0.0; n]);
+        let mut sums = [vec![0.0; nt * SUMS], vec![0.0; nt * SUMS]];
+        let mut at = 0;
+        for (number, segment) in drive.segments.iter().enumerate().filter(|(_, s)| !s.is_empty()) {
+            along.start(number);
+            let clock = drive.clocks.get(number).copied().unwrap_or(0.0);
+            for k in segment.clone() {
+                if watch.stopped() {
+                    return None;
+                }
+                along.place(&course.states[at]);
+                along.observe(k, &mut y, &mut c, &mut h);
+                along.advance(k, &still, &mut x, &mut to);
+                let mut now = vec![0.0; nt * SUMS];
+                for i in 0..n {
+                    spread(&mut now, &to.theta[i * nt..][..nt], &lambda[at][i * SUMS..][..SUMS]);
+                }
+                for o in 0..ny {
+                    spread(&mut now, &h[o * nt..][..nt], &rho[at][o * SUMS..][..SUMS]);
+                }
+                let time = clock + k as f64 * problem.base.sampling_time;
+                sums[0].iter_mut().zip(&now).for_each(|(sum, v)| *sum += v);
+                sums[1].iter_mut().zip(&now).for_each(|(sum, v)| *sum += time * v);
+                at += 1;
+            }
+        }
+        Some(sums)
+    }
+
+    /// What something explains of the residual to first order: `w` enters at a place, sample by sample.
+    pub fn explains(&self, place: Place, w: &[f64]) -> f64 {
+        let place = match place {
+            Place::Force(force) => force,
+            Place::Output(output) => self.forces + output,
+        };
+        let count = self.samples.len();
+        let sums = self.weights[place].chunks_exact(count.max(1)).map(|own| dot(own, w));
+        self.explained(&sums.collect::<Vec<f64>>())
+    }
+
+    /// The same of another value of a parameter, or of one that grows.
+    pub fn parameter_explains(&self, parameter: usize, grows: bool) -> f64 {
+        let own = |all: &[Vec<f64>; 2]| {
+            self.explained(&all[usize::from(grows)][parameter * SUMS..][..SUMS])
+        };
+        self.parameters.as_ref().map_or(0.0, own)
+    }
+
+    /// (r'dy)^2 / dy'dy, from the sum with r and those with random signs.
+    fn explained(&self, sums: &[f64]) -> f64 {
+        let size = dot(&sums[1..], &sums[1..]) / SIGNS as f64;
+        let explained = sums[0] * sums[0] / size;
+        if explained.is_finite() { explained.min(self.total) } else { 0.0 }
+    }
+}
+
+/// to[j] += row[j] * own, for all sums at once; most of a row is often 0.
+fn spread(to: &mut [f64], row: &[f64], own: &[f64]) {
+    for (to, &slope) in to.chunks_exact_mut(SUMS).zip(row) {
+        if slope != 0.0 {
+            to.iter_mut().zip(own).for_each(|(to, own)| *to += slope * own);
+        }
+    }
+}
+
+#[cfg(test)]
+#[path = "adjoint_tests.rs"]
+mod tests;
