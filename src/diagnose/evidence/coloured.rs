@@ -95,14 +95,6 @@ impl Whitener for Coloured {
         series
     }
 
-    fn log_determinant(&self) -> f64 {
-        let parts = self.noise.iter().zip(&self.stretches.counts).enumerate();
-        let one = |(o, (noise, &count)): (usize, (&Autoregressive, &f64))| {
-            noise.log_determinant(&self.stretches.spans, count) + 2.0 * self.log_deviation(o)
-        };
-        parts.map(one).sum()
-    }
-
     fn is_coloured(&self) -> bool {
         self.remembers() || !self.weights.is_empty() || !self.deviations.is_empty()
     }

@@ -25,30 +25,6 @@ impl Stretches {
         }
     }
 
-    /// The same noise for another residual: its variances follow what the model says here.
-    fn following(&self, by: &Coloured, residual: &[f64]) -> Coloured {
-        let mut own = self.filter(by.noise.clone());
-        own.vary(by.variances.clone(), residual);
-        own
-    }
-
-    /// Logarithm of the density of a residual under a disturbance that was estimated elsewhere, but
-    /// for a constant.
-    pub fn log_density(&self, by: &Coloured, residual: &[f64]) -> f64 {
-        let own = self.following(by, residual);
-        let white = own.whiten(residual);
-        let normal = 0.5 * (2.0 * std::f64::consts::PI).ln();
-        let of = |(white, tails): (&[f64], &Option<Tails>)| -> f64 {
-            let one = |z: &f64| match tails {
-                None => -0.5 * z * z,
-                Some(tails) => tails.log_density(z * z) + normal,
-            };
-            white.iter().map(one).sum()
-        };
-        let densities = white.chunks(self.per_output.max(1)).zip(&by.tails).map(of);
-        densities.sum::<f64>() - 0.5 * own.log_determinant()
-    }
-
     /// The normal disturbance of a residual, of one variance per output.
     pub fn normal(&self, residual: &[f64]) -> Coloured {
         let one = |(r, count): (&[f64], f64)| Autoregressive::estimate(r, &self.spans, count);
@@ -158,16 +134,6 @@ mod tests {
         let white = found.whitener.whiten(&r);
         let back = found.whitener.colour(&white);
         assert!(back.iter().zip(&r).all(|(a, b)| (a - b).abs() < 1e-9));
-        // at the variance that suits it best, the density is the likelihood but for what is constant
-        // and for what the coefficients take
-        let density = stretches.log_density(&stretches.coloured(&r).0, &r);
-        let rest = found.log_likelihood - density;
-        let spent = 0.5 * 900f64.ln() * found_order(&stretches, &r) as f64;
-        assert!((rest - (450.0 - spent)).abs() < 2.0, "{rest} {spent}");
         assert!(!stretches.white(&r).is_coloured());
-    }
-
-    fn found_order(stretches: &Stretches, r: &[f64]) -> usize {
-        stretches.normal(r).noise[0].order()
     }
 }

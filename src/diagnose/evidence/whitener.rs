@@ -17,9 +17,6 @@ pub(crate) trait Whitener: Send + Sync + std::fmt::Debug {
     /// Its inverse.
     fn colour(&self, white: &[f64]) -> Vec<f64>;
 
-    /// Logarithm of the determinant of the disturbance's covariance, -2 ln det W.
-    fn log_determinant(&self) -> f64;
-
     /// Whether it is more than a scale per output.
     fn is_coloured(&self) -> bool;
 

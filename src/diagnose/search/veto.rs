@@ -1,8 +1,10 @@
 //! The veto of data that were not fitted: a likelihood is exact, the model is not.
 //!
 //! A cause stays where the part of the record that chooses is more probable with it than without it:
-//! sum over samples of ln p(y | past, with) - ln p(y | past, without) > REFUTED, both with the numbers
-//! and the disturbance that were fitted elsewhere (prequential: Dawid, JRSS A 147, 1984).
+//! ln p(y | with) - ln p(y | without) > REFUTED, both with the numbers of the laws that were fitted
+//! elsewhere (prequential: Dawid, JRSS A 147, 1984). The disturbance is a nuisance of either model and is
+//! estimated where it is judged: what a model still lacks may be larger here than where it was fitted,
+//! and the noise of that part would count it against a cause that has nothing to do with it.
 
 use super::beam::Fit;
 use super::fits::Wish;
@@ -34,13 +36,12 @@ fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<(us
     let without: Vec<Fit> = all.iter().map(|&i| less(study, fit, i)).collect::<Option<_>>()?;
     let models: Vec<_> = std::iter::once(fit).chain(&without).map(|fit| &fit.model).collect();
     let outputs = study.problem.simulate_all(&models, Grain::Coarse);
-    let density = |(fit, y): (&Fit, crate::fit::problem::Simulated)| {
+    let density = |y: crate::fit::problem::Simulated| {
         let residual = study.problem.residual(&y?, Part::Choose);
-        let value = held.log_density(&study.disturbance.coloured(&fit.residual).0, &residual);
+        let value = held.coloured(&residual).1;
         value.is_finite().then_some(value)
     };
-    let fits = std::iter::once(fit).chain(&without);
-    let mut densities = fits.zip(outputs).map(density);
+    let mut densities = outputs.into_iter().map(density);
     let with = densities.next()??;
     let gains: Vec<f64> =
         densities.map(|bare| bare.map_or(f64::INFINITY, |bare| with - bare)).collect();
