@@ -14,6 +14,7 @@ const RUNGS: i32 = 7;
 /// Unknowns from which on products of columns are formed as those of matrices, and rows of one.
 const MANY: usize = 100;
 const ROWS: usize = 1024;
+
 #[derive(Debug, Clone, PartialEq)]
 enum Phase {
     /// Waits for the residuals at the start.

@@ -1,5 +1,6 @@
 //! Every cause that could be at work: effects times places, less what is the same twice.
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::candidates::candidate::{Candidate, Preference, Wire};
@@ -46,6 +47,8 @@ pub(crate) struct Builder<'a, 'b> {
     pub(crate) found: Vec<Candidate>,
     /// Grids that were made, where an effect always has the same.
     pub(crate) grids: Option<Grids>,
+    /// How stiff steep laws are, by target and source.
+    stiffnesses: BTreeMap<(usize, usize), Stiffness>,
 }
 
 /// All candidates for a model, given its residual lines (rad/s).
@@ -92,7 +95,8 @@ pub(crate) fn library(
 
 impl<'a, 'b> Builder<'a, 'b> {
     pub(crate) fn new(problem: &'a Problem<'b>, nominal: &'a Nominal, lines: Vec<f64>) -> Self {
-        Self { problem, nominal, lines, found: vec![], grids: None }
+        let stiffnesses = BTreeMap::new();
+        Self { problem, nominal, lines, found: vec![], grids: None, stiffnesses }
     }
 }
 
@@ -162,9 +166,7 @@ impl Builder<'_, '_> {
         let source = spot.source.unwrap_or(time);
         let grid = self.grid(name, shape, card, (source, spot.own_path));
         let stiffness = match card.needs == Needs::Velocity && push != 0.0 {
-            true => Stiffness::new(push, self.nominal.theta(), |theta| {
-                self.nominal.push_at(self.problem, spot.target, source, theta)
-            }),
+            true => self.stiffness(spot.target, source, push),
             false => Stiffness::default(),
         };
         let sign = match card.sign {
@@ -224,6 +226,16 @@ impl Builder<'_, '_> {
                 twins: twins.clone(),
             });
         }
+    }
+
+    /// How stiff steep laws of a source are in a channel that changes it at this rate.
+    fn stiffness(&mut self, target: usize, source: usize, push: f64) -> Stiffness {
+        let (problem, nominal) = (self.problem, self.nominal);
+        let new = || {
+            let at = |theta: &[f64]| nominal.push_at(problem, target, source, theta);
+            Stiffness::new(push, nominal.theta(), at)
+        };
+        self.stiffnesses.entry((target, source)).or_insert_with(new).clone()
     }
 
     /// The grid of an effect of one source.

@@ -6,8 +6,14 @@
 //! parameters: D(theta) = D_0 product of (theta_p / theta_p0)^a_p, a_p = d ln D / d ln theta_p, exact
 //! where D is a product of powers, as 1/m.
 
+use std::ops::Range;
+
 /// Share of a parameter by which D is asked beside it.
 const ASIDE: f64 = 1e-3;
+/// Exponents up to this are what the step and rounding leave of no dependence.
+const NONE: f64 = 1e-6;
+/// Golden section: spreads shares evenly.
+const GOLDEN: f64 = 0.618_033_988_749_895;
 
 /// The rate D.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -20,16 +26,23 @@ pub(crate) struct Stiffness {
 impl Stiffness {
     /// A rate at nominal parameters, and what it is at others.
     pub fn new(rate: f64, nominal: &[f64], at: impl Fn(&[f64]) -> Option<f64>) -> Self {
-        let power = |(p, &value): (usize, &f64)| {
+        // d ln D / d ln theta along parameters, each moved by its own share of ASIDE
+        let exponent = |group: Range<usize>, share: fn(usize) -> f64| {
             let mut theta = nominal.to_vec();
-            theta[p] *= 1.0 + ASIDE;
-            let aside = at(&theta)?;
-            let exponent = (aside / rate).ln() / ASIDE.ln_1p();
-            // what the step size and rounding leave of no dependence
-            let counts = value != 0.0 && exponent.is_finite() && exponent.abs() > 1e-6;
-            counts.then_some((p, value, exponent))
+            group.for_each(|p| theta[p] *= 1.0 + share(p) * ASIDE);
+            at(&theta).map(|aside| (aside / rate).ln() / ASIDE.ln_1p())
         };
-        let powers = nominal.iter().enumerate().filter_map(power).collect();
+        // different shares, so that those that D is a quotient of do not cancel
+        let counts = |group: &Range<usize>| {
+            let along = exponent(group.clone(), |p| 1.0 + (p as f64 * GOLDEN).fract());
+            along.is_none_or(|along| !(along.abs() <= NONE))
+        };
+        let power = |p: usize| {
+            let along = exponent(p..p + 1, |_| 1.0)?;
+            let counts = nominal[p] != 0.0 && along.is_finite() && along.abs() > NONE;
+            counts.then_some((p, nominal[p], along))
+        };
+        let powers = within(0..nominal.len(), &counts).into_iter().filter_map(power).collect();
         Self { nominal: rate.abs(), powers }
     }
 
@@ -39,6 +52,21 @@ impl Stiffness {
         let moved = self.nominal * self.powers.iter().map(factor).product::<f64>();
         if moved.is_finite() { moved } else { self.nominal }
     }
+}
+
+/// Numbers of a range that count, found by halving what counts as a whole (group testing: Dorfman, Annals
+/// of Mathematical Statistics 14, 1943): of many parameters D depends on few.
+fn within(range: Range<usize>, counts: &impl Fn(&Range<usize>) -> bool) -> Vec<usize> {
+    if range.is_empty() || !counts(&range) {
+        return vec![];
+    }
+    if range.len() == 1 {
+        return vec![range.start];
+    }
+    let middle = range.start + range.len() / 2;
+    let mut found = within(range.start..middle, counts);
+    found.extend(within(middle..range.end, counts));
+    found
 }
 
 #[cfg(test)]
@@ -56,5 +84,18 @@ mod tests {
             assert!((of.at(&theta) / exact - 1.0).abs() < 1e-2, "{theta:?}");
         }
         assert_eq!(Stiffness::default().at(&nominal), 0.0);
+    }
+
+    #[test]
+    fn of_many_parameters_few_are_asked() {
+        let nominal: Vec<f64> = (0..2000).map(|p| 1.0 + f64::from(p)).collect();
+        let asked = std::cell::Cell::new(0);
+        let rate = |theta: &[f64]| {
+            asked.set(asked.get() + 1);
+            Some(theta[700] / theta[1900])
+        };
+        let of = Stiffness::new(rate(&nominal).unwrap(), &nominal, rate);
+        assert_eq!(of.powers.iter().map(|(p, ..)| *p).collect::<Vec<_>>(), [700, 1900]);
+        assert!(asked.get() < 100, "{}", asked.get());
     }
 }

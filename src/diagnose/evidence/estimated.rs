@@ -14,12 +14,11 @@ use crate::statistics::dot;
 
 impl Stretches {
     fn filter(&self, noise: Vec<Autoregressive>) -> Coloured {
-        let none = vec![None; noise.len()];
         Coloured {
             stretches: self.clone(),
             tails: vec![None; noise.len()],
+            variances: vec![None; noise.len()],
             noise,
-            variances: none,
             deviations: vec![],
             weights: vec![],
         }
@@ -31,8 +30,9 @@ impl Stretches {
         self.filter(self.per_output(residual).map(one).collect())
     }
 
-    /// The normal disturbance whose variances follow signals or time; `None` where none does.
-    fn varying(&self, residual: &[f64], white: &[f64]) -> Option<Coloured> {
+    /// A normal disturbance with the variances that follow signals or time, as `white`, what it leaves of
+    /// a residual, has them; `None` where none does.
+    fn varying(&self, even: &Coloured, residual: &[f64], white: &[f64]) -> Option<Coloured> {
         let length = self.per_output.max(1);
         let yhat: Vec<f64> = self.measured.iter().zip(residual).map(|(y, r)| y - r).collect();
         let parts = yhat.chunks(length).zip(residual.chunks(length)).zip(white.chunks(length));
@@ -43,36 +43,22 @@ impl Stretches {
         if variances.iter().all(Option::is_none) {
             return None;
         }
-        let mut of = self.filter(vec![]);
+        let mut of = even.clone();
         of.vary(variances, residual);
-        let even = of.even(residual);
-        of.noise = self.normal(&even).noise;
-        of.tails = vec![None; of.noise.len()];
+        of.noise = self.normal(&of.even(residual)).noise;
         Some(of)
-    }
-
-    /// Logarithm of the likelihood of every output at the variance that suits it best, and what
-    /// its past does not foretell.
-    fn likelihoods(&self, of: &Coloured, residual: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let white = of.whiten(residual);
-        let parts = self.per_output(&white).zip(&of.noise).enumerate();
-        let one = |(o, ((w, count), noise)): (usize, ((&[f64], f64), &Autoregressive))| {
-            let spent = if of.variances[o].is_some() { count.max(1.0).ln() } else { 0.0 };
-            noise.log_likelihood(w, &self.spans, count) - of.log_deviation(o) - spent
-        };
-        (parts.map(one).collect(), white)
     }
 
     /// The disturbance of a residual by its own type, and the logarithm of its likelihood, its own
     /// numbers paid for.
     pub fn coloured(&self, residual: &[f64]) -> (Coloured, f64) {
         let even = self.normal(residual);
-        let (likelihoods, white) = self.likelihoods(&even, residual);
-        let varying = self.varying(residual, &white);
-        let even = self.with_tails(even, &likelihoods, &white, residual);
+        let white = even.whiten(residual);
+        let varying = self.varying(&even, residual, &white);
+        let even = self.with_tails(even, &white, residual);
         let other = varying.map(|of| {
-            let (likelihoods, white) = self.likelihoods(&of, residual);
-            self.with_tails(of, &likelihoods, &white, residual)
+            let white = of.whiten(residual);
+            self.with_tails(of, &white, residual)
         });
         match other {
             Some(other) if other.1 > even.1 => other,
@@ -80,14 +66,14 @@ impl Stretches {
         }
     }
 
-    /// The same with the tails of what it leaves, and the logarithm of its likelihood.
-    fn with_tails(
-        &self,
-        mut of: Coloured,
-        likelihoods: &[f64],
-        white: &[f64],
-        residual: &[f64],
-    ) -> (Coloured, f64) {
+    /// A normal disturbance with the tails of what it leaves, `white`, and the logarithm of its
+    /// likelihood at the variances that suit it best.
+    fn with_tails(&self, mut of: Coloured, white: &[f64], residual: &[f64]) -> (Coloured, f64) {
+        let one = |(o, ((w, count), noise)): (usize, ((&[f64], f64), &Autoregressive))| {
+            let spent = if of.variances[o].is_some() { count.max(1.0).ln() } else { 0.0 };
+            noise.log_likelihood(w, &self.spans, count) - of.log_deviation(o) - spent
+        };
+        let normal: f64 = self.per_output(white).zip(&of.noise).enumerate().map(one).sum();
         let length = self.per_output.max(1);
         let both = white.chunks(length).zip(residual.chunks(length));
         let tails: Vec<_> = both.map(|(white, r)| Tails::of(white, r)).collect();
@@ -100,7 +86,7 @@ impl Stretches {
             };
             of.weights = white.chunks(length).zip(&of.tails).flat_map(weigh).collect();
         }
-        (of, likelihoods.iter().sum::<f64>() + gain)
+        (of, normal + gain)
     }
 }
 

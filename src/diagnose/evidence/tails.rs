@@ -45,13 +45,12 @@ impl Tails {
         if excess <= 0.0 || n * excess * excess / 24.0 <= n.ln() {
             return None;
         }
-        let normal = -0.5 * n * ((2.0 * std::f64::consts::PI * variance).ln() + 1.0);
         let one = |&freedom: &f64| {
             let tails = Self::with(freedom, &squares, variance);
             (tails, squares.iter().map(|q| tails.log_density(*q)).sum::<f64>())
         };
         let best = FREEDOM.iter().map(one).max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let gain = best.1 - normal - 0.5 * n.ln();
+        let gain = over_normal(best.1, n, variance);
         (gain > 0.0).then_some((best.0, gain))
     }
 
@@ -61,11 +60,7 @@ impl Tails {
     pub fn rather_than_gross_errors(samples: &[f64]) -> Option<f64> {
         let (tails, gain) = Self::of(samples, samples)?;
         let squares: Vec<f64> = samples.iter().map(|z| z * z).filter(|q| *q > 0.0).collect();
-        let n = squares.len() as f64;
-        let variance = squares.iter().sum::<f64>() / n;
-        let normal = -0.5 * n * ((2.0 * std::f64::consts::PI * variance).ln() + 1.0);
-        let of_t = gain + normal + 0.5 * n.ln();
-        (of_t > contaminated(&squares)).then_some(tails.freedom)
+        (gain > contaminated(&squares)).then_some(tails.freedom)
     }
 
     /// The most probable scale at given degrees of freedom.
@@ -99,11 +94,19 @@ impl Tails {
     }
 }
 
-/// Logarithm of the likelihood of the most probable contaminated normal density of squares.
+/// By how much a density of one number more is more probable than the normal one of this variance: the
+/// number is paid for.
+fn over_normal(log_likelihood: f64, n: f64, variance: f64) -> f64 {
+    let normal = -0.5 * n * ((2.0 * std::f64::consts::PI * variance).ln() + 1.0);
+    log_likelihood - normal - 0.5 * n.ln()
+}
+
+/// The same of the most probable contaminated normal density of squares.
 fn contaminated(squares: &[f64]) -> f64 {
     let largest = squares.iter().copied().fold(0.0, f64::max).sqrt();
     let uniform = 0.5 / largest;
     let n = squares.len() as f64;
+    let mean = squares.iter().sum::<f64>() / n;
     let mut sorted = squares.to_vec();
     let half = sorted.len() / 2;
     // the median of a normal density's squares is 0.4549 of its variance
@@ -128,7 +131,7 @@ fn contaminated(squares: &[f64]) -> f64 {
             break;
         }
     }
-    likelihood
+    over_normal(likelihood, n, mean)
 }
 
 #[cfg(test)]

@@ -129,11 +129,7 @@ impl Context<'_, '_> {
         let parameter = &self.problem.base.signals.parameters[p];
         let key = Key::EffectParameter(fitted.model.added.len() - 1, 0);
         let precision = Precision::new(self.problem, nuisance, fitted);
-        let change = added.cause.clipped(
-            &added.parameters,
-            self.problem.step(Grain::Fine),
-            &fitted.model.theta,
-        )[0];
+        let change = added.parameters[0];
         let unit = &parameter.unit;
         Some(Released {
             name: parameter.name.clone(),

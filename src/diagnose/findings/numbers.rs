@@ -19,19 +19,19 @@ impl Context<'_, '_> {
     pub fn values(&self, chosen: &Finished, index: usize) -> Vec<Value> {
         let added = &chosen.fitted.model.added[index];
         let cause = &added.cause;
-        let theta = chosen.fitted.model.parameters();
-        let step = self.problem.step(Grain::Fine);
-        let parameters = cause.clipped(&added.parameters, step, &theta);
         let errors = profile_likelihood::errors(self.problem, chosen, index);
         let error = |i: usize| errors[i];
+        let theta = chosen.fitted.model.parameters();
         if let Wire::Parameter(p) = cause.wire {
             return vec![Value {
                 name: "value".into(),
-                value: chosen.fitted.model.theta[p] + parameters[0],
+                value: theta[p],
                 std_error: chosen.error_of(&cause.into, error(0)),
                 unit: cause.units.0.clone(),
             }];
         }
+        let step = self.problem.step(Grain::Fine);
+        let parameters = cause.clipped(&added.parameters, step, &theta);
         let parameters = cause.card.parameters.iter().zip(parameters).enumerate();
         // where the values of a free curve stand is part of what was found
         let at = crate::candidates::free_curve::knots_of(cause).into_iter().enumerate().map(

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::candidates::candidate::Wire;
 use crate::data::Record;
 use crate::error::DiagnoseError;
 use crate::evaluate::Metrics;
@@ -168,15 +167,13 @@ impl Context<'_, '_> {
     pub fn extend(&self, model: &Model) -> Result<System, DiagnoseError> {
         let system = self.system;
         let signals = &self.problem.base.signals;
-        let (mut theta, moved) = (model.theta.clone(), model.parameters());
+        let theta = model.parameters();
         let mut extended = system.clone();
         let step = self.problem.step(Grain::Fine);
         for added in &model.added {
-            let parameters = added.cause.clipped(&added.parameters, step, &moved);
-            match added.cause.wire {
-                Wire::Parameter(p) => theta[p] += parameters[0],
-                _ => extended.effects.extend(added.cause.placed(&parameters)),
-            }
+            // a parameter is no effect: it has no entry of its own
+            let parameters = added.cause.clipped(&added.parameters, step, &theta);
+            extended.effects.extend(added.cause.placed(&parameters));
         }
         let changes: Vec<(String, f64)> = signals
             .parameters

@@ -236,17 +236,14 @@ impl<'a> Problem<'a> {
     /// The simulation of a model.
     pub fn job(&self, model: &Model, grain: Grain) -> Option<Job> {
         let step = self.step(grain);
-        let (mut theta, moved) = (model.theta.clone(), model.parameters());
+        let theta = model.parameters();
         let mut placed = vec![];
         let mut effect_values: Vec<f64> = self.system.effects.iter().flat_map(own_values).collect();
         for added in &model.added {
-            let own = added.cause.clipped(&added.parameters, step, &moved);
-            match added.cause.wire {
-                Wire::Parameter(p) => theta[p] += own[0],
-                _ => {
-                    placed.push(added.cause.placed(&own)?);
-                    effect_values.extend(own);
-                }
+            if !matches!(added.cause.wire, Wire::Parameter(_)) {
+                let own = added.cause.clipped(&added.parameters, step, &theta);
+                placed.push(added.cause.placed(&own)?);
+                effect_values.extend(own);
             }
         }
         let plan = self.plan(grain, &placed)?;

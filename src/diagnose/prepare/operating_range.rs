@@ -67,9 +67,9 @@ impl Nominal {
                 }
             })
             .collect();
-        let along =
-            |target| points.iter().flat_map(|point| column(problem, target, point)).collect();
-        let columns: Vec<Vec<f64>> = (0..base.targets.entries.len()).map(along).collect();
+        let targets = 0..base.targets.entries.len();
+        let columns: Vec<Vec<f64>> =
+            targets.map(|target| columns(problem, target, &points)).collect();
         let dt = base.sampling_time;
         let moves: Vec<f64> = states.iter().map(|s| rms(&gradient(s, dt)).max(1e-300)).collect();
         let mut natural = vec![];
@@ -124,7 +124,7 @@ impl Nominal {
     /// D: the rate at which one unit into target `target` changes source `source`, per s;
     /// 0 where there is no immediate way, `None` where it changes sign.
     pub fn push(&self, problem: &Problem<'_>, target: usize, source: usize) -> Option<f64> {
-        self.push_at(problem, target, source, self.theta())
+        push(problem, source, &self.points, &self.columns[target])
     }
 
     /// The same of a model of these parameter values, along the same record.
@@ -135,31 +135,9 @@ impl Nominal {
         source: usize,
         theta: &[f64],
     ) -> Option<f64> {
-        let law = problem.system.model.as_ref();
-        let n = self.sizes;
-        let base = &problem.base;
-        let values: Vec<f64> = self
-            .points
-            .iter()
-            .map(|point| {
-                let point = &Point { theta: theta.to_vec(), ..point.clone() };
-                let column = &column(problem, target, point);
-                match base.sources.entries[source].1 {
-                    Origin::State(i) => column[i],
-                    Origin::Own(i) if !base.declared_coordinates => column[i],
-                    Origin::Own(i) => {
-                        slope(law, n, Ask::Coordinates, point, Along::State(column))[i]
-                    }
-                    Origin::Output(o) => slope(law, n, Ask::Output, point, Along::State(column))[o],
-                    _ => 0.0,
-                }
-            })
-            .collect();
-        let typical = median(&values);
-        if typical == 0.0 || !typical.is_finite() {
-            return Some(0.0);
-        }
-        values.iter().all(|v| v * typical >= 0.0).then_some(typical)
+        let moved = |point: &Point| Point { theta: theta.to_vec(), ..point.clone() };
+        let points: Vec<Point> = self.points.iter().map(moved).collect();
+        push(problem, source, &points, &columns(problem, target, &points))
     }
 
     /// Parameter values of the baseline.
@@ -195,19 +173,42 @@ impl Nominal {
     }
 }
 
-/// Change of the derivatives by one unit into a target, at a point.
-fn column(problem: &Problem<'_>, target: usize, point: &Point) -> Vec<f64> {
+/// Change of the derivatives by one unit into a target, point after point.
+fn columns(problem: &Problem<'_>, target: usize, points: &[Point]) -> Vec<f64> {
     let (law, base) = (problem.system.model.as_ref(), &problem.base);
     let n = base.sizes;
     let unit = crate::model::probe::unit;
-    match base.targets.entries[target].1 {
+    let column = |point: &Point| match base.targets.entries[target].1 {
         Origin::Own(i) if base.declared_channels => {
             slope(law, n, Ask::Derivative, point, Along::Channel(&unit(n.w, i)))
         }
         Origin::Own(i) => unit(n.x, i),
         Origin::Input(i) => slope(law, n, Ask::Derivative, point, Along::Input(&unit(n.u, i))),
         _ => vec![0.0; n.x],
+    };
+    points.iter().flat_map(column).collect()
+}
+
+/// The typical rate at which a source changes along changes of the derivatives, see [`Nominal::push`].
+fn push(problem: &Problem<'_>, source: usize, points: &[Point], columns: &[f64]) -> Option<f64> {
+    let (law, base) = (problem.system.model.as_ref(), &problem.base);
+    let n = base.sizes;
+    let value = |(p, point): (usize, &Point)| {
+        let column = &columns[p * n.x..][..n.x];
+        match base.sources.entries[source].1 {
+            Origin::State(i) => column[i],
+            Origin::Own(i) if !base.declared_coordinates => column[i],
+            Origin::Own(i) => slope(law, n, Ask::Coordinates, point, Along::State(column))[i],
+            Origin::Output(o) => slope(law, n, Ask::Output, point, Along::State(column))[o],
+            _ => 0.0,
+        }
+    };
+    let values: Vec<f64> = points.iter().enumerate().map(value).collect();
+    let typical = median(&values);
+    if typical == 0.0 || !typical.is_finite() {
+        return Some(0.0);
     }
+    values.iter().all(|v| v * typical >= 0.0).then_some(typical)
 }
 
 /// The size of w that moves the state it pushes most as hard as it moves anyway.

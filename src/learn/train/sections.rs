@@ -175,6 +175,18 @@ impl<'a, E: Number> Sections<'a, E> {
         if t < self.settle { self.early } else { 1.0 }
     }
 
+    /// Puts the first states of a block of sections where a simulation begins; gives where each lane
+    /// does. Lanes beyond the last section repeat it and count for nothing.
+    fn begin(&self, course: &Course<E>, starts: &[usize], thread: &mut Thread<E>) -> Vec<usize> {
+        let Thread { work, guess } = thread;
+        let mut at = starts.to_vec();
+        at.resize(E::BLOCK, starts[starts.len() - 1]);
+        let first = work.frame(0);
+        let states = self.engine.program.states;
+        self.guess.forward(course, &at, guess, &mut work.rows[first..first + states]);
+        at
+    }
+
     /// One block of sections, forward and, if wanted, back.
     fn block(
         &self,
@@ -184,13 +196,9 @@ impl<'a, E: Number> Sections<'a, E> {
         back: bool,
         tally: &mut [f64],
     ) {
+        let at = self.begin(course, starts, thread);
         let Thread { work, guess } = thread;
         let (states, outputs) = (self.engine.program.states, self.engine.program.outputs);
-        // lanes beyond the last section repeat it and count for nothing
-        let mut at = starts.to_vec();
-        at.resize(E::BLOCK, starts[starts.len() - 1]);
-        let first = work.frame(0);
-        self.guess.forward(course, &at, guess, &mut work.rows[first..first + states]);
         let (squares, counts) = tally.split_at_mut(self.length * outputs);
         for t in 0..self.length {
             self.look(course, &at, starts.len(), work, t);

@@ -46,7 +46,9 @@ pub fn note(note: &Note) -> String {
              of which neither shows alone may have been missed. All would take about {whole} (--memory)."
         ),
         Note::LawsRanked { laws, of } => format!(
-            "There are {of} laws, more than are simulated one by one: all were ranked by what each alone              explains to first order (an adjoint run), and the last {laws} were left there. Two laws of              which neither shows alone may have been missed; --only and --without make the search smaller."
+            "There are {of} laws, more than are simulated one by one: all were ranked by what each alone \
+             explains to first order (an adjoint run), and the last {laws} were left there. Two laws of \
+             which neither shows alone may have been missed; --only and --without make the search smaller."
         ),
         Note::Unresolved { output, left, error, unit } => format!(
             "What the simulation leaves of {output} ({} rms) is no more than its own error, of the \

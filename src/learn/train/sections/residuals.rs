@@ -74,13 +74,17 @@ impl<E: Number> Sections<'_, E> {
         all
     }
 
+    /// How much a sample of an output counts in the section that begins at `k`.
+    fn count(&self, course: &Course<E>, o: usize, k: usize, t: usize) -> f64 {
+        self.share_at(t) * course.counted.as_ref().map_or(1.0, |counted| counted[o][k + t])
+    }
+
     /// Terms of the double sum that count, an output at a time.
     fn terms(&self, course: &Course<E>, starts: &[usize]) -> f64 {
         let outputs = self.engine.program.outputs;
-        let of = |o: usize, k: usize, t: usize| match &course.counted {
-            _ if course.y[o][k + t].wide().is_nan() => 0.0,
-            Some(counted) => self.share_at(t) * counted[o][k + t],
-            None => self.share_at(t),
+        let of = |o: usize, k: usize, t: usize| match course.y[o][k + t].wide().is_nan() {
+            true => 0.0,
+            false => self.count(course, o, k, t),
         };
         let section = |&k: &usize| -> f64 {
             (0..outputs).map(|o| (0..self.length).map(|t| of(o, k, t)).sum::<f64>()).sum()
@@ -97,29 +101,27 @@ impl<E: Number> Sections<'_, E> {
         thread: &mut Thread<E>,
         out: &mut [f64],
     ) {
-        let Thread { work, guess } = thread;
-        let (states, outputs) = (self.engine.program.states, self.engine.program.outputs);
-        let mut at = starts.to_vec();
-        at.resize(E::BLOCK, starts[starts.len() - 1]);
-        let first = work.frame(0);
-        self.guess.forward(course, &at, guess, &mut work.rows[first..first + states]);
+        let at = self.begin(course, starts, thread);
+        let (work, outputs) = (&mut thread.work, self.engine.program.outputs);
         if let Some((state, by)) = moved {
+            let first = work.frame(0);
             let row = work.rows[first + state].lanes_mut().iter_mut();
             row.for_each(|x| *x = E::of(x.wide() + by));
         }
         for t in 0..self.length {
             self.look(course, &at, starts.len(), work, t);
             self.engine.forward(work, t);
-            let share = self.share_at(t);
-            for o in 0..if share == 0.0 { 0 } else { outputs } {
+            if self.share_at(t) == 0.0 {
+                continue;
+            }
+            for o in 0..outputs {
                 let errors = work.errors[t * outputs + o].lanes().iter();
                 let measured = work.measured[o].lanes();
                 for (lane, error) in errors.take(starts.len()).enumerate() {
                     if measured[lane].wide().is_nan() {
                         continue;
                     }
-                    let count = course.counted.as_ref().map_or(1.0, |c| c[o][starts[lane] + t]);
-                    let count = share * count;
+                    let count = self.count(course, o, starts[lane], t);
                     out[(lane * self.length + t) * outputs + o] =
                         error.wide() * (self.weights[o] * count).sqrt();
                 }
