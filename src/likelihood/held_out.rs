@@ -1,13 +1,20 @@
 //! What samples that were not fitted say: prequential log density.
 //!
-//! sum over held samples of ln p(y[k] | y[0..k], numbers fitted to the others): the filter sees what is
-//! before a sample, the numbers do not. Source: Dawid, JRSS A 147, 1984.
+//! sum over held samples of ln p(y[k] | y[0..k], numbers fitted to the others): a stretch that is held begins
+//! where the filter of all samples before it stands. The variances of the noise are a nuisance of either model
+//! and are estimated where it is judged: what a model still lacks may be larger here than where it was fitted,
+//! and would count against a cause that has nothing to do with it. Source: Dawid, JRSS A 147, 1984.
 
 use std::ops::Range;
 
 use super::follow::Wanted;
 use super::hypothesis::Hypothesis;
+use super::intensities::most_likely;
 use super::predictor::Predictor;
+use super::replay::Pass;
+
+/// Estimates of the noise of held samples; the first is that of the samples that were fitted.
+const NOISES: usize = 3;
 
 impl Predictor {
     /// The same, blind to what was measured in some samples.
@@ -20,14 +27,30 @@ impl Predictor {
         blind
     }
 
-    /// Log density of held samples under a hypothesis; `None` where it cannot be run.
+    /// Log density of held samples under a hypothesis, at the variances of its noise that are most likely
+    /// there; `None` where it cannot be run.
     pub(crate) fn density(&self, of: &Hypothesis, held: &[Range<usize>]) -> Option<f64> {
         let model = self.extended(&of.parts, &of.theta).ok()?;
         let wanted = Wanted { gate: Some(self.gate()), ..Wanted::default() };
-        let run = self.run(&model, &of.noise, wanted).ok()?;
-        let ny = run.path.outputs;
-        let inside = held.iter().cloned().flatten().filter(|&k| k < self.len());
-        let sum = inside.map(|k| run.densities[k * ny..][..ny].iter().sum::<f64>()).sum::<f64>();
-        (run.diverged_at.is_none() && sum.is_finite()).then_some(sum)
+        let mut noise = of.noise.clone();
+        let mut best = f64::NEG_INFINITY;
+        for _ in 0..NOISES {
+            let run = self.run(&model, &noise, wanted).ok().filter(|r| r.diverged_at.is_none())?;
+            let mut path = run.path;
+            path.segments = path.segments.iter().flat_map(|own| within(own, held)).collect();
+            let ny = path.outputs;
+            let is_held = |k: &usize| held.iter().any(|range| range.contains(k));
+            let gated = run.outliers.iter().filter(|(_, k)| is_held(k));
+            let gated: f64 = gated.map(|(o, k)| run.densities[k * ny + o]).sum();
+            best = best.max(gated + Pass::of(&path, &noise, false).log_likelihood);
+            noise = most_likely(&path, &noise, &noise.components()).0;
+        }
+        best.is_finite().then_some(best)
     }
+}
+
+/// The parts of a segment that are held.
+fn within(segment: &Range<usize>, held: &[Range<usize>]) -> Vec<Range<usize>> {
+    let own = held.iter().map(|h| h.start.max(segment.start)..h.end.min(segment.end));
+    own.filter(|range| !range.is_empty()).collect()
 }
