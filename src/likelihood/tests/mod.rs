@@ -2,6 +2,7 @@
 #![allow(clippy::single_range_in_vec_init)] // a record of one segment
 
 mod filter;
+mod held_out;
 mod intensities;
 mod jacobian;
 mod measured;
