@@ -22,8 +22,9 @@ pub(crate) const AS_GOOD: f64 = 1.5;
 /// Odds against the best above which a look-alike is said.
 pub(crate) const LOOK_ALIKE: f64 = 0.02;
 /// Odds, as a natural logarithm, by which samples that were not fitted must speak against a cause
-/// for it to be withdrawn.
-pub(crate) const REFUTED: f64 = 0.0;
+/// for it to be withdrawn, or those that the fitted ones gave it where they are less: 20 to 1 (Kass and
+/// Raftery, JASA 90, 1995: strong). Samples that a cause does not reach say next to nothing.
+pub(crate) const REFUTED: f64 = 3.0;
 
 /// How far below the best a first-order prediction may be to be fitted.
 pub(crate) const PREDICTED: f64 = 6.0;

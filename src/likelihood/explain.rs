@@ -27,8 +27,9 @@ use super::replay::Pass;
 use super::tangent::Site;
 use super::weigh::{Weighed, plainest};
 
-/// Log density by which held samples must speak for a cause.
-const REFUTED: f64 = 0.0;
+/// Odds, as a natural logarithm, by which held samples must speak against a cause for it to be withdrawn,
+/// or those that the fitted ones gave it where they are less: 20 to 1 (Kass and Raftery, JASA 90, 1995).
+const REFUTED: f64 = 3.0;
 
 impl Predictor {
     /// What explains the records, at most `most` causes; `held` are samples that nothing is fitted to
@@ -231,7 +232,8 @@ impl Predictor {
             Some((with.map_or(f64::NEG_INFINITY, |with| with - bare), i, rest))
         };
         let worst = (0..found.len()).filter_map(one).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        (worst.0 <= REFUTED).then_some((worst.1, worst.2))
+        let odds = found[worst.1].log_odds.max(0.0);
+        (worst.0 <= -REFUTED.min(odds)).then_some((worst.1, worst.2))
     }
 
     /// The causes that are left, fitted to all samples.

@@ -1,8 +1,8 @@
 //! The veto of data that were not fitted: a likelihood is exact, the model is not.
 //!
-//! A cause stays where the part of the record that chooses is more probable with it than without it:
-//! ln p(y | with) - ln p(y | without) > REFUTED, both with the numbers of the laws that were fitted
-//! elsewhere (prequential: Dawid, JRSS A 147, 1984). The disturbance is a nuisance of either model and is
+//! A cause goes where the part of the record that chooses speaks against it,
+//! ln p(y | with) - ln p(y | without) <= -min(REFUTED, its log odds by the part that was fitted), both with
+//! the numbers of the laws that were fitted there (prequential: Dawid, JRSS A 147, 1984). The disturbance is a nuisance of either model and is
 //! estimated where it is judged: what a model still lacks may be larger here than where it was fitted,
 //! and the noise of that part would count it against a cause that has nothing to do with it.
 
@@ -43,10 +43,10 @@ fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<(us
     };
     let mut densities = outputs.into_iter().map(density);
     let with = densities.next()??;
-    let gains: Vec<f64> =
-        densities.map(|bare| bare.map_or(f64::INFINITY, |bare| with - bare)).collect();
-    let (at, gain) = gains.iter().copied().enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (gain <= REFUTED).then(|| (all[at], without[at].clone()))
+    let gains = densities.map(|bare| bare.map_or(f64::INFINITY, |bare| with - bare));
+    let (at, gain) = gains.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
+    let odds = fit.posterior() - without[at].posterior();
+    (gain <= -REFUTED.min(odds.max(0.0))).then(|| (all[at], without[at].clone()))
 }
 
 /// The fit without one of its causes.
