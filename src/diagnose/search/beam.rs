@@ -14,6 +14,11 @@ use crate::fit::problem::Model;
 /// Rise of a logarithm of a posterior that makes one fit better than another of the same causes.
 const BETTER: f64 = 0.01;
 
+/// What a model may leave, in units of what the one without causes leaves. That is error and noise, so
+/// noise alone is less: the prior of its variance ends there, whatever likelihood a larger one would have
+/// (a disturbance with a pole near 1 forgives any drift); a tenth is left to chance.
+const LEAVES: f64 = 1.1;
+
 /// A fitted model.
 #[derive(Debug, Clone)]
 pub(crate) struct Fit {
@@ -84,6 +89,10 @@ impl SetKey {
     }
 }
 
+fn mean_square(residual: &[f64]) -> f64 {
+    residual.iter().map(|r| r * r).sum::<f64>() / residual.len().max(1) as f64
+}
+
 /// A cause's name in keys.
 pub(crate) fn name(cause: &Candidate) -> String {
     let also = if cause.also_into.is_empty() { "" } else { "+" };
@@ -95,12 +104,19 @@ pub(crate) fn name(cause: &Candidate) -> String {
 #[derive(Debug, Default)]
 pub(crate) struct Beam {
     fits: BTreeMap<SetKey, Fit>,
+    /// Mean square that the model without causes leaves, parameters held.
+    nothing: Option<f64>,
 }
 
 impl Beam {
     /// Takes a fit in; whether it is better than what was there.
     pub fn keep(&mut self, fit: Fit) -> bool {
         let key = fit.key();
+        if fit.causes() == 0 && !fit.free {
+            self.nothing = Some(mean_square(&fit.residual));
+        } else if self.nothing.is_some_and(|most| mean_square(&fit.residual) > LEAVES * most) {
+            return false;
+        }
         let known = self.fits.get(&key).map(Fit::posterior);
         let better = known.is_none_or(|known| fit.posterior() > known + BETTER);
         if better {
