@@ -11,6 +11,7 @@ use crate::fit::problem::{Model, Problem};
 use crate::prepare::operating_range::Nominal;
 use crate::register;
 use crate::system::{Origin, Route};
+use crate::watch::Watch;
 
 /// Which effects and parameters may be causes.
 #[derive(Debug, Clone, Default)]
@@ -47,17 +48,20 @@ pub(crate) struct Builder<'a, 'b> {
     pub(crate) found: Vec<Candidate>,
     /// Grids that were made, where an effect always has the same.
     pub(crate) grids: Option<Grids>,
-    /// How stiff steep laws are, by target and source.
+    /// How fast targets change sources, and how stiff steep laws are there.
+    pushes: BTreeMap<(usize, usize), Option<f64>>,
     stiffnesses: BTreeMap<(usize, usize), Stiffness>,
 }
 
-/// All candidates for a model, given its residual lines (rad/s).
+/// All candidates for a model, given its residual lines (rad/s); those that are made where somebody asks
+/// to stop.
 pub(crate) fn library(
     problem: &Problem<'_>,
     nominal: &Nominal,
     model: &Model,
     lines: Vec<f64>,
     allowed: &Allowed,
+    watch: &dyn Watch,
 ) -> Vec<Arc<Candidate>> {
     let mut builder = Builder::new(problem, nominal, lines);
     builder.grids = Some(Grids::default());
@@ -82,7 +86,7 @@ pub(crate) fn library(
         }
         builder.paths(name, shape.as_ref(), &declared);
         if declared.places.channel {
-            for group in &groups {
+            for group in groups.iter().take_while(|_| !watch.stopped()) {
                 builder.channel_paths(name, shape.as_ref(), &declared, group, &sources);
             }
         }
@@ -95,8 +99,8 @@ pub(crate) fn library(
 
 impl<'a, 'b> Builder<'a, 'b> {
     pub(crate) fn new(problem: &'a Problem<'b>, nominal: &'a Nominal, lines: Vec<f64>) -> Self {
-        let stiffnesses = BTreeMap::new();
-        Self { problem, nominal, lines, found: vec![], grids: None, stiffnesses }
+        let (pushes, stiffnesses) = (BTreeMap::new(), BTreeMap::new());
+        Self { problem, nominal, lines, found: vec![], grids: None, pushes, stiffnesses }
     }
 }
 
@@ -228,12 +232,18 @@ impl Builder<'_, '_> {
         }
     }
 
+    /// The rate at which a target changes a source, see [`Nominal::push`].
+    pub(crate) fn push_of(&mut self, target: usize, source: usize) -> Option<f64> {
+        let nominal = self.nominal;
+        *self.pushes.entry((target, source)).or_insert_with(|| nominal.push(target, source))
+    }
+
     /// How stiff steep laws of a source are in a channel that changes it at this rate.
     fn stiffness(&mut self, target: usize, source: usize, push: f64) -> Stiffness {
-        let (problem, nominal) = (self.problem, self.nominal);
+        let pushes = self.nominal.pushes.clone();
         let new = || {
-            let at = |theta: &[f64]| nominal.push_at(problem, target, source, theta);
-            Stiffness::new(push, nominal.theta(), at)
+            let theta = pushes.theta.clone();
+            Stiffness::new(push, theta, move |theta| pushes.push_at(target, source, theta))
         };
         self.stiffnesses.entry((target, source)).or_insert_with(new).clone()
     }

@@ -147,7 +147,6 @@ impl Builder<'_, '_> {
             }
             let spot = Spot { target, source: Some(source), own_path: false };
             let signal = &base.sources.entries[source].0;
-            let sign_of = |entry: usize| self.nominal.push(self.problem, target, entry);
             let (push, rate) = match card.needs {
                 Needs::Velocity => {
                     let velocity = match &signal.quantity {
@@ -157,7 +156,7 @@ impl Builder<'_, '_> {
                     let known_position = base.rates.rate(source).is_some();
                     let series = self.nominal.series(source);
                     let both = series.iter().any(|v| *v < 0.0) && series.iter().any(|v| *v > 0.0);
-                    let Some(d) = sign_of(source) else { continue };
+                    let Some(d) = self.push_of(target, source) else { continue };
                     if !velocity
                         || !both
                         || d == 0.0
@@ -177,7 +176,7 @@ impl Builder<'_, '_> {
                 }
                 Needs::CoordinateWithRate => {
                     let Some(rate) = base.rates.rate(source) else { continue };
-                    let Some(d) = sign_of(rate.0).filter(|d| *d != 0.0) else { continue };
+                    let Some(d) = self.push_of(target, rate.0).filter(|d| *d != 0.0) else { continue };
                     (d * rate.1, Some(rate))
                 }
                 Needs::Motion => {
@@ -189,7 +188,7 @@ impl Builder<'_, '_> {
                     let rate =
                         if is_velocity { Some((source, 1.0)) } else { base.rates.rate(source) };
                     let Some(rate) = rate.filter(|_| !(is_velocity && position)) else { continue };
-                    let Some(d) = sign_of(rate.0).filter(|d| *d != 0.0) else { continue };
+                    let Some(d) = self.push_of(target, rate.0).filter(|d| *d != 0.0) else { continue };
                     (d * rate.1, Some(rate))
                 }
                 Needs::AngleOrTime => {
@@ -210,7 +209,7 @@ impl Builder<'_, '_> {
             // a law of either sign that has words for both needs to know which is which
             let named = Named { quantity: self.quantity(source), ..Named::default() };
             if push == 0.0 && shape.senses(&named).is_some() {
-                let push = sign_of(source).unwrap_or(0.0);
+                let push = self.push_of(target, source).unwrap_or(0.0);
                 self.found[first..].iter_mut().for_each(|cause| cause.push = push);
             }
             self.passed_on(name, shape, card, target, source);
@@ -254,7 +253,7 @@ impl Builder<'_, '_> {
         {
             return;
         }
-        let fills = |t: usize| self.nominal.push(self.problem, t, source).is_some_and(|d| d != 0.0);
+        let mut fills = |t: usize| self.push_of(t, source).is_some_and(|d| d != 0.0);
         if !fills(target) {
             return;
         }

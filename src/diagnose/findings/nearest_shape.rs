@@ -49,7 +49,7 @@ impl Context<'_, '_> {
         let model = &chosen.fitted.model;
         let y = self.problem.simulate(model, Grain::Coarse)?;
         let (problem, nominal, nuisance) = (self.problem, self.nominal, &chosen.nuisance);
-        let nearest = Drawing { problem, nominal, nuisance }.sketches(model, &y);
+        let nearest = Drawing { problem, nominal, nuisance, watch: &() }.sketches(model, &y);
         let Sketch { cause, values, errors, share } = nearest.into_iter().next()?;
         if !(share > 0.0) {
             return None;

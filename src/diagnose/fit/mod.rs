@@ -1,5 +1,6 @@
 //! Fits of models to records: residuals, step sizes, nuisance, least squares, covariances.
 
+pub(crate) mod adjoint;
 pub(crate) mod allowing;
 pub(crate) mod block_jacobian;
 pub(crate) mod collinear;
@@ -19,3 +20,4 @@ pub(crate) mod segment_restart;
 pub(crate) mod simulation_cache;
 pub(crate) mod step_size;
 pub(crate) mod supposed;
+pub(crate) mod work;

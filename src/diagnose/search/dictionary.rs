@@ -94,7 +94,7 @@ pub(super) fn dictionary(
     }
     let (room, column) = (room(problem), 8 * residual.len());
     let of = wanted_laws(&probes);
-    let looked_at = ranked((problem, nominal), about, candidates, &probes, room, watch);
+    let looked_at = ranked((problem, nominal), about, candidates, &probes, watch);
     if let Some(leading) = &looked_at {
         probes.retain(|probe| leading.contains(&(probe.candidate, probe.start)));
     }

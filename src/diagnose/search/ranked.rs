@@ -1,32 +1,28 @@
 //! Which grid points of a very large library are simulated: those that explain most to first order.
 //!
-//! Simulating every law at every place takes (places x coordinates x laws) runs. Where that is more than
-//! a stated amount of work, all are ranked by one [`Adjoint`] run first, in which a law costs a few sums
-//! over the samples, and only the leading ones are simulated (sure independence screening: Fan and Lv,
-//! JRSS B 70, 2008).
+//! Where simulating every law at every place is more than a stated amount of [`work`](crate::fit::work),
+//! all are ranked by one [`Adjoint`] run first, each by (r'dy)^2 / dy'dy, and only the leading ones are
+//! simulated (sure independence screening: Fan and Lv, JRSS B 70, 2008).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::adjoint::{Adjoint, Place};
 use super::item::About;
 use super::open_loop::open_loop;
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::probes::Probe;
 use crate::effect::Mechanism;
-use crate::fit::problem::{Grain, Problem};
+use crate::fit::adjoint::{Adjoint, Extent, Place};
+use crate::fit::problem::Problem;
+use crate::fit::work::{affordable, room};
 use crate::prepare::operating_range::Nominal;
 use crate::system::Origin;
 use crate::watch::Watch;
 
-/// Multiplications of a dense model that simulating all grid points may take, and those that the leading
-/// ones take where it is more.
-const MOST: f64 = 1e11;
-const TAKEN: f64 = 2.5e9;
-/// Evaluations of the law in a step of the integrator.
-const STAGES: f64 = 4.0;
+/// Sums with random signs: the size of a change is known within a third.
+const SIGNS: usize = 16;
 /// Grid points of one law that are simulated.
 const POINTS: usize = 3;
 /// Grid points that are ranked before it is asked whether to stop.
@@ -57,29 +53,17 @@ pub(super) fn ranked(
     about: &About<'_>,
     candidates: &[Arc<Candidate>],
     probes: &[Probe],
-    room: usize,
     watch: &dyn Watch,
 ) -> Option<BTreeSet<(usize, usize)>> {
-    let each = work(problem);
-    if probes.len() as f64 * each <= MOST {
-        return None;
-    }
+    let most = affordable(problem, probes.len())?;
+    watch.report(0.06, "ranking candidates by their first order");
     let by = Ranker { problem, nominal };
     let ways: Vec<Way<'_>> = probes.iter().map(|probe| by.way(candidates, probe)).collect();
     let parameters = ways.iter().any(|way| matches!(way, Way::Parameter(..)));
-    let adjoint = Adjoint::new(problem, about, parameters, room, watch)?;
+    let of = Extent { signs: SIGNS, parameters, room: room(problem) };
+    let adjoint = Adjoint::new(problem, about, of, watch)?;
     let scores = by.scores(&adjoint, (candidates, probes), &ways, watch);
-    let most = (TAKEN / each) as usize;
     Some(leading(probes, &scores, most))
-}
-
-/// Multiplications of one simulation, were the model dense.
-fn work(problem: &Problem<'_>) -> f64 {
-    let n = problem.base.sizes;
-    let steps = problem.base.sampling_time / problem.step(Grain::Coarse);
-    let stages = if problem.base.signals.time.is_continuous() { STAGES } else { 1.0 };
-    let samples = problem.simulated().len() as f64;
-    samples * steps * stages * (n.x + n.u) as f64 * (n.x + n.y) as f64
 }
 
 /// Of every law the best grid points, of all of these the best.
@@ -138,14 +122,8 @@ impl Ranker<'_, '_> {
             }
         };
         let is_path = cause.wire == Wire::Path;
-        let place = target.and_then(|target| match base.targets.entries[target].1 {
-            Origin::Own(channel) => Some(Place::Force(channel)),
-            // what also goes straight to an output is more than what enters the states
-            Origin::Input(i) if is_path && self.nominal.is_direct(self.problem, i) => None,
-            Origin::Input(i) => Some(Place::Force(base.sizes.w + i)),
-            Origin::Output(o) => Some(Place::Output(o)),
-            _ => None,
-        });
+        let both = (self.problem, self.nominal);
+        let place = target.and_then(|target| Place::of(both, target, is_path));
         let is_law = cause.card.mechanism == Mechanism::Law && cause.also_into.is_empty();
         let (Some(source), Some(place), true) = (source, place, is_law) else { return Way::Not };
         let mut parameters = cause.starts[probe.start].clone();

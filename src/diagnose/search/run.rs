@@ -56,7 +56,7 @@ pub(crate) fn search(
     if let Some(y) = problem.simulate(start, Grain::Coarse) {
         problem.flag_spikes(&y);
     }
-    let start = limited(problem, nominal, allowed, most, start.clone());
+    let start = limited(problem, nominal, allowed, most, start.clone(), watch);
     problem.recorrect(&start);
     let y = problem.simulate(&start, Grain::Coarse)?;
     problem.rescale(&y);

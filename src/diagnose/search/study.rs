@@ -212,7 +212,7 @@ impl<'a, 'b> Study<'a, 'b> {
                 lines.push(line);
             }
         }
-        let all = library(self.problem, self.nominal, &fit.model, lines, self.allowed);
+        let all = library(self.problem, self.nominal, &fit.model, lines, self.allowed, self.watch);
         let finer = |cause: Arc<Candidate>| {
             if !(cause.blended() && cause.thresholds) {
                 return cause;

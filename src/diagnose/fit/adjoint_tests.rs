@@ -4,9 +4,12 @@ use super::*;
 use crate::candidates::candidate::Wire;
 use crate::candidates::library::{Allowed, library};
 use crate::data::Record;
-use crate::fit::problem::{Model, Span};
+use crate::fit::problem::Span;
 use crate::prepare::prepared::Prepared;
 use lacuna_core::file::{Format, parse};
+
+const SIGNS: usize = 16;
+const EXTENT: Extent = Extent { signs: SIGNS, parameters: true, room: 1 << 30 };
 
 /// A nonlinear machine, by steps of an integrator or from sample to sample.
 fn model(time: &str) -> String {
@@ -45,10 +48,10 @@ fn compared(time: &str, tolerance: f64) {
     let y = problem.simulate(start, Grain::Coarse).unwrap();
     let residual = problem.residual(&y, Part::Fit);
     let about = About { model: start, residual: &residual, basis: &[] };
-    let adjoint = Adjoint::new(problem, &about, true, 1 << 30, &()).unwrap();
+    let adjoint = Adjoint::new(problem, &about, EXTENT, &()).unwrap();
     let only = Allowed { only: vec!["cubic".into(), "parameter".into()], ..Allowed::default() };
     let mut seen = 0;
-    for cause in library(problem, nominal, start, vec![], &only) {
+    for cause in library(problem, nominal, start, vec![], &only, &()) {
         // so little that the machine answers as a line
         let size = 1e-8;
         let job = problem.job(&start.with(&cause, vec![size]), Grain::Coarse).unwrap();
@@ -59,11 +62,10 @@ fn compared(time: &str, tolerance: f64) {
             .zip(&residual)
             .map(|(a, b)| (b - a) / size)
             .collect();
-        let count = adjoint.samples.len();
         let (sums, place): (Vec<f64>, _) = match &cause.wire {
             Wire::Parameter(p) => {
                 let own = &adjoint.parameters.as_ref().unwrap()[0];
-                (own[p * SUMS..][..SUMS].to_vec(), "parameter".into())
+                (own[p * (SIGNS + 1)..][..SIGNS + 1].to_vec(), "parameter".into())
             }
             Wire::Stage(route) => {
                 let w: Vec<f64> = adjoint.seen[route.source].iter().map(|z| z.powi(3)).collect();
@@ -73,8 +75,10 @@ fn compared(time: &str, tolerance: f64) {
                     "u" => 2,
                     _ => continue,
                 };
-                let own = adjoint.weights[place].chunks_exact(count);
-                (own.map(|own| dot(own, &w)).collect(), cause.into.clone())
+                let mut sums = vec![0.0; SIGNS + 1];
+                let own = adjoint.at(Place::Force(place));
+                own.zip(&w).for_each(|(own, w)| add(&mut sums, own, *w));
+                (sums, cause.into.clone())
             }
             _ => continue,
         };

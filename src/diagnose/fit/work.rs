@@ -1,0 +1,37 @@
+//! Work of simulations, and how much of it a search may take before it ranks what it simulates.
+//!
+//! Simulating every law at every place takes (places x coordinates x laws) runs, each of
+//! samples x stages x (n + inputs) x (n + outputs) multiplications for n states. Where that is more than a
+//! stated amount, all are ranked by one adjoint run, in which a law costs a few sums over the samples, and
+//! only the leading ones are simulated (sure independence screening: Fan and Lv, JRSS B 70, 2008).
+
+use crate::fit::problem::{Grain, Problem};
+
+/// Multiplications that simulating all laws may take, and those that the leading ones take where it is
+/// more.
+const MOST: f64 = 1e11;
+const TAKEN: f64 = 2.5e9;
+/// Evaluations of the law in a step of the integrator.
+const STAGES: f64 = 4.0;
+/// Share of the memory that derivatives along the record may take.
+const SHARE: u64 = 3;
+
+/// How many of so many simulations are made, where not all of them are.
+pub(crate) fn affordable(problem: &Problem<'_>, simulations: usize) -> Option<usize> {
+    let each = each(problem);
+    (simulations as f64 * each > MOST).then_some((TAKEN / each) as usize)
+}
+
+/// Bytes that derivatives along the record may take.
+pub(crate) fn room(problem: &Problem<'_>) -> usize {
+    problem.memory.part(SHARE)
+}
+
+/// Multiplications of one simulation, were the model dense.
+fn each(problem: &Problem<'_>) -> f64 {
+    let n = problem.base.sizes;
+    let steps = problem.base.sampling_time / problem.step(Grain::Coarse);
+    let stages = if problem.base.signals.time.is_continuous() { STAGES } else { 1.0 };
+    let samples = problem.simulated().len() as f64;
+    samples * steps * stages * (n.x + n.u) as f64 * (n.x + n.y) as f64
+}
