@@ -8,6 +8,7 @@
 
 use rayon::prelude::*;
 
+use super::called_for::called_for;
 use super::error::LikelihoodError;
 use super::follow::Wanted;
 use super::intensities::{concentrated, most_likely};
@@ -83,14 +84,35 @@ impl Predictor {
     ///
     /// [`LikelihoodError::Diverges`] if no noise keeps the predictor among the finite numbers.
     pub fn missing(&self) -> Result<Vec<MissingForce>, LikelihoodError> {
+        self.missing_of(usize::MAX, &|| false)
+    }
+
+    /// The same of so many channels at most, those that the score of a force in them calls for most; of
+    /// fewer where somebody asks to stop.
+    ///
+    /// # Errors
+    ///
+    /// As [`missing`](Self::missing).
+    #[doc(hidden)]
+    pub fn missing_of(
+        &self,
+        most: usize,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Vec<MissingForce>, LikelihoodError> {
+        if stop() {
+            return Ok(vec![]);
+        }
         let path = self.tracking(&self.model)?;
         let start = self.white(self.spread.iter().map(|s| s * s + f64::MIN_POSITIVE).collect());
-        let without = most_likely(&path, &start, &start.components()).1;
-        let channels = self.distinct(&path);
-        let mut found = channels
-            .par_iter()
-            .map(|&c| self.force(&path, c, without))
-            .collect::<Result<Vec<_>, _>>()?;
+        let (noise, without) = most_likely(&path, &start, &start.components());
+        let mut channels = self.distinct(&path);
+        if channels.len() > most {
+            channels = called_for(&path, &noise, &channels);
+            channels.truncate(most);
+        }
+        let force = |&c: &usize| (!stop()).then(|| self.force(&path, c, without));
+        let mut found =
+            channels.par_iter().filter_map(force).collect::<Result<Vec<_>, _>>()?;
         let values: Vec<(String, f64)> =
             found.iter().map(|f| (f.channel.clone(), f.gain)).collect();
         for force in &mut found {

@@ -10,7 +10,8 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use crate::candidates::free_curve::{At, Drawing};
-use crate::fit::adjoint::{About, Adjoint, Extent, Place};
+use crate::fit::adjoint::{About, Adjoint, Extent};
+use crate::fit::explained::Place;
 use crate::fit::work::{affordable, room};
 
 /// Sums with random signs: what fifteen numbers explain is known within a fifth.

@@ -14,11 +14,15 @@ use crate::system::{Base, Drive, Lane, Placed, Plan, System, SystemError};
 
 /// Lanes that are one block of numbers.
 const PACK: usize = 8;
-/// Blocks that are simulated side by side in one piece of work, at most.
+/// Blocks that are simulated side by side in one piece of work, at most, and bytes of parameters that they
+/// may have: every sample goes through all of them, so that they should stay in a cache of the processor.
 const PACKS_AT_ONCE: usize = 8;
+const CACHE: usize = 256 << 10;
 
-/// Share of the memory that simulations side by side may take.
+/// Share of the memory that simulations side by side may take, and bytes beyond which more of them are no
+/// faster, where every thread has a block.
 const AT_ONCE: u64 = 12;
+const ENOUGH: usize = 128 << 20;
 
 /// One simulation that is wanted.
 #[derive(Debug, Clone)]
@@ -174,8 +178,9 @@ impl<'a> Problem<'a> {
     /// Simulations whose outputs memory holds side by side.
     pub fn at_once(&self, span: Span) -> usize {
         let samples = if span == Span::Fit { self.fit_drive.len() } else { self.len() };
-        let room = self.memory.part(AT_ONCE) / (8 * samples * self.y.len()).max(1);
-        room.max(PACK)
+        let each = (8 * samples * self.y.len()).max(1);
+        let enough = (ENOUGH / each).max(PACK * rayon::current_num_threads());
+        (self.memory.part(AT_ONCE) / each).min(enough).max(PACK)
     }
 
     /// Integration step of a grain, in s.
@@ -274,7 +279,9 @@ impl<'a> Problem<'a> {
             }
         }
         let threads = rayon::current_num_threads();
-        let rounds = packs.len().div_ceil(threads * PACKS_AT_ONCE).max(1);
+        let parameters = 8 * PACK * self.base.signals.parameters.len();
+        let most = (CACHE / parameters.max(1)).clamp(1, PACKS_AT_ONCE);
+        let rounds = packs.len().div_ceil(threads * most).max(1);
         let share = packs.len().div_ceil(threads * rounds).max(1);
         let pieces: Vec<Vec<usize>> = packs.chunks(share).map(<[_]>::concat).collect();
         let done: Vec<Vec<(usize, Simulated)>> =

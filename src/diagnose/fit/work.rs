@@ -13,13 +13,27 @@ const MOST: f64 = 1e11;
 const TAKEN: f64 = 2.5e9;
 /// Evaluations of the law in a step of the integrator.
 const STAGES: f64 = 4.0;
+/// Passes of a filter that one missing force takes: sizes that are tried, steps of two fits.
+const PASSES: f64 = 100.0;
 /// Share of the memory that derivatives along the record may take.
 const SHARE: u64 = 3;
 
 /// How many of so many simulations are made, where not all of them are.
 pub(crate) fn affordable(problem: &Problem<'_>, simulations: usize) -> Option<usize> {
-    let each = each(problem);
-    (simulations as f64 * each > MOST).then_some((TAKEN / each) as usize)
+    within(simulations, each(problem))
+}
+
+/// How many of all missing forces are smoothed, where not all of them are; at least one. A pass of a Kalman
+/// filter with one state more takes samples x outputs x (n + 1)^2 multiplications.
+pub(crate) fn affordable_forces(problem: &Problem<'_>) -> Option<usize> {
+    let n = problem.base.sizes;
+    let pass = (problem.len() * n.y) as f64 * ((n.x + 1) as f64).powi(2);
+    within(n.w + n.u, PASSES * pass).map(|most| most.max(1))
+}
+
+/// How many of a number of things of the same work are done, where not all of them are.
+fn within(count: usize, each: f64) -> Option<usize> {
+    (count as f64 * each > MOST).then_some((TAKEN / each) as usize)
 }
 
 /// Bytes that derivatives along the record may take.
