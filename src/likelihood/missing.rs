@@ -111,8 +111,7 @@ impl Predictor {
             channels.truncate(most);
         }
         let force = |&c: &usize| (!stop()).then(|| self.force(&path, c, without));
-        let mut found =
-            channels.par_iter().filter_map(force).collect::<Result<Vec<_>, _>>()?;
+        let mut found = channels.par_iter().filter_map(force).collect::<Result<Vec<_>, _>>()?;
         let values: Vec<(String, f64)> =
             found.iter().map(|f| (f.channel.clone(), f.gain)).collect();
         for force in &mut found {

@@ -81,8 +81,9 @@ impl Drawing<'_, '_> {
         let places = chosen.filter_map(|i| self.curves(&mut builder, &spots[i]));
         let places: Vec<Vec<Arc<Candidate>>> = places.collect();
         // all places with few knots, the leading ones with others too
-        let mut leading: Vec<(Sketch, &[Arc<Candidate>])> =
-            going_on(&places).filter_map(|causes| Some((best(&causes[..1])?, &causes[1..]))).collect();
+        let mut leading: Vec<(Sketch, &[Arc<Candidate>])> = going_on(&places)
+            .filter_map(|causes| Some((best(&causes[..1])?, &causes[1..])))
+            .collect();
         leading.sort_by(|a, b| b.0.share.total_cmp(&a.0.share));
         leading.truncate(LEADING);
         let finer = leading.into_iter().map(|(few, causes)| match best(causes) {

@@ -107,7 +107,9 @@ impl Drawing<'_, '_> {
                 })
                 .collect();
             let mut laws: Vec<(Vec<usize>, Vec<Vec<usize>>, Smoothed)> = vec![];
-            for (i, own) in single.iter().enumerate().filter(|(i, own)| wants(*i) && !own.is_empty()) {
+            for (i, own) in
+                single.iter().enumerate().filter(|(i, own)| wants(*i) && !own.is_empty())
+            {
                 let orders: Vec<Vec<usize>> =
                     std::iter::once(0).chain(SINGLE).map(|o| vec![o]).collect();
                 let columns = [&constant[..], own].concat();

@@ -85,3 +85,7 @@ impl Drawing<'_, '_> {
         Some(order.into_iter().take_while(fits).collect())
     }
 }
+
+#[cfg(test)]
+#[path = "leading_places_tests.rs"]
+mod tests;

@@ -46,6 +46,8 @@ pub(crate) struct Builder<'a, 'b> {
     pub(crate) nominal: &'a Nominal,
     pub(crate) lines: Vec<f64>,
     pub(crate) found: Vec<Candidate>,
+    /// The card that was used last.
+    card: Option<Arc<EffectCard>>,
     /// Grids that were made, where an effect always has the same.
     pub(crate) grids: Option<Grids>,
     /// How fast targets change sources, and how stiff steep laws are there.
@@ -100,7 +102,7 @@ pub(crate) fn library(
 impl<'a, 'b> Builder<'a, 'b> {
     pub(crate) fn new(problem: &'a Problem<'b>, nominal: &'a Nominal, lines: Vec<f64>) -> Self {
         let (pushes, stiffnesses) = (BTreeMap::new(), BTreeMap::new());
-        Self { problem, nominal, lines, found: vec![], grids: None, pushes, stiffnesses }
+        Self { problem, nominal, lines, found: vec![], card: None, grids: None, pushes, stiffnesses }
     }
 }
 
@@ -180,6 +182,7 @@ impl Builder<'_, '_> {
             SignRule::Along => 0.0,
             SignRule::Positive => 1.0,
         };
+        let card = self.shared(card);
         let (target_signal, target_origin) = &base.targets.entries[spot.target];
         let source_signal = &base.sources.entries[source].0;
         let simple = card.properties.of_an_instrument;
@@ -230,6 +233,12 @@ impl Builder<'_, '_> {
                 twins: twins.clone(),
             });
         }
+    }
+
+    /// A card that many candidates have.
+    pub(crate) fn shared(&mut self, card: &EffectCard) -> Arc<EffectCard> {
+        let known = self.card.take().filter(|known| **known == *card);
+        self.card.insert(known.unwrap_or_else(|| Arc::new(card.clone()))).clone()
     }
 
     /// The rate at which a target changes a source, see [`Nominal::push`].

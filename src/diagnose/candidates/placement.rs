@@ -1,5 +1,7 @@
 //! Where each effect may sit in a model: parameters, paths, channels, beside.
 
+use std::sync::Arc;
+
 use crate::candidates::candidate::{Candidate, Preference, Wire};
 use crate::candidates::library::{Builder, Spot};
 use crate::candidates::stiffness::Stiffness;
@@ -25,6 +27,7 @@ impl Builder<'_, '_> {
             let value = model.theta[p];
             let mut card = card.clone();
             card.parameters[0].value = 0.0;
+            let card = self.shared(&card);
             let changes = card.mechanism == Mechanism::Parameter;
             // a change of the value, kept inside the parameter's own bounds and of its sign
             let floor = if value > 0.0 { parameter.min.max(0.05 * value) } else { parameter.min };
@@ -48,7 +51,7 @@ impl Builder<'_, '_> {
                 place: Preference::Parameter,
                 linear: vec![0],
                 refine: vec![],
-                starts: vec![vec![0.0]],
+                starts: Arc::new(vec![vec![0.0]]),
                 min: vec![range.0],
                 max: vec![range.1],
                 thresholds: false,
@@ -176,7 +179,9 @@ impl Builder<'_, '_> {
                 }
                 Needs::CoordinateWithRate => {
                     let Some(rate) = base.rates.rate(source) else { continue };
-                    let Some(d) = self.push_of(target, rate.0).filter(|d| *d != 0.0) else { continue };
+                    let Some(d) = self.push_of(target, rate.0).filter(|d| *d != 0.0) else {
+                        continue;
+                    };
                     (d * rate.1, Some(rate))
                 }
                 Needs::Motion => {
@@ -188,7 +193,9 @@ impl Builder<'_, '_> {
                     let rate =
                         if is_velocity { Some((source, 1.0)) } else { base.rates.rate(source) };
                     let Some(rate) = rate.filter(|_| !(is_velocity && position)) else { continue };
-                    let Some(d) = self.push_of(target, rate.0).filter(|d| *d != 0.0) else { continue };
+                    let Some(d) = self.push_of(target, rate.0).filter(|d| *d != 0.0) else {
+                        continue;
+                    };
                     (d * rate.1, Some(rate))
                 }
                 Needs::AngleOrTime => {

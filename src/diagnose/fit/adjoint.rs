@@ -11,14 +11,19 @@
 //! (adjoint-state method: Plessix, Geophysical Journal International 167, 2006; Giles and Pierce, Flow,
 //! Turbulence and Combustion 65, 2000). What laws explain by such sums is in `explained`.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use crate::data::Random;
 use crate::fit::problem::{Grain, Model, Part, Problem};
 use crate::statistics::{dot, project};
 use crate::system::{Jacobian, Lane, Plan, Transition};
 use crate::watch::Watch;
 
-/// Samples after which it is asked whether to stop.
+/// Samples after which it is asked whether to stop, and those that one thread follows along parameters.
 const AT_ONCE: usize = 128;
+const TOGETHER: usize = 256;
 
 /// Derivatives of one sample, row by row.
 #[derive(PartialEq)]
@@ -222,7 +227,8 @@ impl Adjoint {
         Some(all)
     }
 
-    /// What a unit of every parameter, and of its growth per second, does to the sums.
+    /// What a unit of every parameter, and of its growth per second, does to the sums; samples are dealt
+    /// out to all threads, and their shares added in order.
     fn along_parameters(
         &self,
         problem: &Problem<'_>,
@@ -232,18 +238,26 @@ impl Adjoint {
     ) -> Option<[Vec<f64>; 2]> {
         let drive = problem.fit_drive();
         let given = (&lane.theta[..], &lane.effect_values[..]);
-        let mut along = Transition::new(problem.system, plan, drive, given, true)?;
         let (n, ny, nt) = (course.n, problem.y.len(), lane.theta.len());
-        let mut to: Jacobian = along.jacobian();
-        let (mut c, mut y, mut h) = (vec![0.0; ny * n], vec![0.0; ny], vec![0.0; ny * nt]);
-        let (still, mut x) = (vec![0.0; self.forces], vec![0.0; n]);
         let each = self.sums;
-        let mut sums = [vec![0.0; nt * each], vec![0.0; nt * each]];
-        let mut at = 0;
-        for (number, segment) in drive.segments.iter().enumerate().filter(|(_, s)| !s.is_empty()) {
+        let mut pieces = vec![];
+        let mut first = 0;
+        for (number, segment) in drive.segments.iter().enumerate() {
+            for from in segment.clone().step_by(TOGETHER) {
+                let to = segment.end.min(from + TOGETHER);
+                pieces.push((number, from..to, first));
+                first += to - from;
+            }
+        }
+        let share = |(number, samples, mut at): (usize, Range<usize>, usize)| {
+            let mut along = Transition::new(problem.system, plan, drive, given, true)?;
+            let mut to: Jacobian = along.jacobian();
+            let (mut c, mut y, mut h) = (vec![0.0; ny * n], vec![0.0; ny], vec![0.0; ny * nt]);
+            let (still, mut x) = (vec![0.0; self.forces], vec![0.0; n]);
+            let mut sums = [vec![0.0; nt * each], vec![0.0; nt * each]];
             along.start(number);
             let clock = drive.clocks.get(number).copied().unwrap_or(0.0);
-            for k in segment.clone() {
+            for k in samples {
                 if watch.stopped() {
                     return None;
                 }
@@ -258,10 +272,16 @@ impl Adjoint {
                     spread(&mut now, &h[o * nt..][..nt], &rho[at][o * each..][..each]);
                 }
                 let time = clock + k as f64 * problem.base.sampling_time;
-                sums[0].iter_mut().zip(&now).for_each(|(sum, v)| *sum += v);
-                sums[1].iter_mut().zip(&now).for_each(|(sum, v)| *sum += time * v);
+                add(&mut sums[0], &now, 1.0);
+                add(&mut sums[1], &now, time);
                 at += 1;
             }
+            Some(sums)
+        };
+        let shares: Vec<Option<[Vec<f64>; 2]>> = pieces.into_par_iter().map(share).collect();
+        let mut sums = [vec![0.0; nt * each], vec![0.0; nt * each]];
+        for share in shares {
+            sums.iter_mut().zip(share?).for_each(|(sums, share)| add(sums, &share, 1.0));
         }
         Some(sums)
     }

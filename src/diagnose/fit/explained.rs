@@ -23,6 +23,15 @@ use crate::system::Origin;
 /// Damping of a matrix that is inverted, as a share of its diagonal.
 const DAMPING: f64 = 1e-6;
 
+/// What a unit of something does to first order.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Effect {
+    /// (r'dy)^2 / dy'dy: the sum of squares that it explains in the size that suits best.
+    pub explained: f64,
+    /// dy'dy, about.
+    pub squares: f64,
+}
+
 /// Where something enters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Place {
@@ -51,8 +60,8 @@ impl Place {
 }
 
 impl Adjoint {
-    /// What something explains of the residual to first order: `w` enters at a place, sample by sample.
-    pub fn explains(&self, place: Place, w: &[f64]) -> f64 {
+    /// What something does to first order: `w` enters at a place, sample by sample.
+    pub fn explains(&self, place: Place, w: &[f64]) -> Effect {
         let mut sums = vec![0.0; self.sums];
         for (own, w) in self.at(place).zip(w) {
             add(&mut sums, own, *w);
@@ -92,18 +101,19 @@ impl Adjoint {
     }
 
     /// The same of another value of a parameter, or of one that grows.
-    pub fn parameter_explains(&self, parameter: usize, grows: bool) -> f64 {
+    pub fn parameter_explains(&self, parameter: usize, grows: bool) -> Effect {
         let own = |all: &[Vec<f64>; 2]| {
             self.explained(&all[usize::from(grows)][parameter * self.sums..][..self.sums])
         };
-        self.parameters.as_ref().map_or(0.0, own)
+        self.parameters.as_ref().map_or(Effect::default(), own)
     }
 
     /// (r'dy)^2 / dy'dy, from the sum with r and those with random signs.
-    fn explained(&self, sums: &[f64]) -> f64 {
-        let size = dot(&sums[1..], &sums[1..]) / (self.sums - 1) as f64;
-        let explained = sums[0] * sums[0] / size;
-        if explained.is_finite() { explained.min(self.total) } else { 0.0 }
+    fn explained(&self, sums: &[f64]) -> Effect {
+        let squares = dot(&sums[1..], &sums[1..]) / (self.sums - 1) as f64;
+        let explained = sums[0] * sums[0] / squares;
+        let explained = if explained.is_finite() { explained.min(self.total) } else { 0.0 };
+        Effect { explained, squares }
     }
 }
 

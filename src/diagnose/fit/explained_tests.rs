@@ -3,9 +3,11 @@
 use super::*;
 use crate::candidates::candidate::Wire;
 use crate::candidates::library::{Allowed, library};
-use crate::data::Record;
-use crate::fit::problem::Span;
+use crate::data::{Random, Record};
+use crate::fit::adjoint::{About, Extent};
+use crate::fit::problem::{Grain, Model, Part, Span};
 use crate::prepare::prepared::Prepared;
+use crate::statistics::add_to_basis;
 use lacuna_core::file::{Format, parse};
 
 const SIGNS: usize = 16;
@@ -105,4 +107,40 @@ fn sums_of_outputs_are_followed_back_from_sample_to_sample() {
 fn sums_of_outputs_are_followed_back_through_the_steps_of_an_integrator() {
     // what enters is held over a sample, which a law inside the steps is not
     compared("continuous", 0.03);
+}
+
+/// What a curve of several numbers does by simulation, against what the adjoint says of it.
+#[test]
+fn laws_together_explain_their_score_statistic() {
+    let system = parse(&model("discrete"), "machine.toml", Format::Toml).unwrap();
+    let prepared = Prepared::new(&system, &[record()], 0.7).unwrap();
+    let (problem, nominal) = (&prepared.problem, &prepared.nominal);
+    let start: &Model = &prepared.start;
+    let y = problem.simulate(start, Grain::Coarse).unwrap();
+    let residual = problem.residual(&y, Part::Fit);
+    let about = About { model: start, residual: &residual, basis: &[] };
+    let adjoint = Adjoint::new(problem, &about, Extent { signs: 600, ..EXTENT }, &()).unwrap();
+    let only = Allowed { only: vec!["cubic".into(), "linear".into()], ..Allowed::default() };
+    let all = library(problem, nominal, start, vec![], &only, &());
+    let size = 1e-8;
+    let here = all.iter().filter(|cause| cause.into == "v" && cause.of.as_deref() == Some("x"));
+    let (mut columns, mut terms): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (vec![], vec![]);
+    for cause in here {
+        let power = if cause.effect == "cubic" { 3 } else { 1 };
+        let job = problem.job(&start.with(cause, vec![size]), Grain::Coarse).unwrap();
+        let moved = problem.run(&[job], Span::Fit).swap_remove(0).unwrap();
+        let moved = problem.residual(&moved, Part::Fit);
+        columns.push(moved.iter().zip(&residual).map(|(a, b)| (b - a) / size).collect());
+        let source = problem.base.sources.find("x").unwrap();
+        terms.push(adjoint.seen[source].iter().map(|z| z.powi(power)).collect());
+    }
+    assert_eq!(columns.len(), 2);
+    let mut own = vec![];
+    columns.into_iter().for_each(|column| add_to_basis(&mut own, column));
+    let exact: f64 = own.iter().map(|q| dot(q, &residual).powi(2)).sum();
+    let at = |k: usize| terms.iter().enumerate().map(|(j, term)| (j, term[k])).collect();
+    let terms: Vec<Vec<(usize, f64)>> = (0..terms[0].len()).map(at).collect();
+    let explained = adjoint.explain_together(Place::Force(1), 2, &terms);
+    // 600 signs: known within a twentieth
+    assert!((explained / exact - 1.0).abs() < 0.2, "{explained} is not {exact}");
 }

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use crate::candidates::candidate::Wire;
 use crate::fit::simulation_cache::Remembered;
 pub(crate) use crate::fit::supposed::{Added, Grain, Model, Simulated};
+use crate::fit::work::Work;
 use crate::memory::Memory;
 use crate::system::{Base, Drive, Lane, Placed, Plan, System, SystemError};
 
@@ -88,8 +89,12 @@ pub(crate) struct Problem<'a> {
     pub(crate) plans: Mutex<HashMap<(Grain, Vec<String>), Arc<Plan>>>,
     /// Simulations that may be asked for again.
     pub(crate) remembered: Remembered,
-    /// What it may take.
+    /// What it may take, and how much work is done.
     pub(crate) memory: Memory,
+    pub(crate) work: Work,
+    /// Simulations that were asked for.
+    #[cfg(test)]
+    pub(crate) simulations: std::sync::atomic::AtomicUsize,
 }
 
 impl<'a> Problem<'a> {
@@ -154,6 +159,9 @@ impl<'a> Problem<'a> {
             plans: Mutex::new(HashMap::new()),
             remembered: Remembered::default(),
             memory: Memory::default(),
+            work: Work::default(),
+            #[cfg(test)]
+            simulations: std::sync::atomic::AtomicUsize::new(0),
             system,
             base,
             drive,
@@ -260,6 +268,8 @@ impl<'a> Problem<'a> {
 
     /// Runs many simulations, side by side and on all threads.
     pub fn run(&self, jobs: &[Job], span: Span) -> Vec<Simulated> {
+        #[cfg(test)]
+        self.simulations.fetch_add(jobs.len(), std::sync::atomic::Ordering::Relaxed);
         let drive = if span == Span::Fit { &self.fit_drive } else { &self.drive };
         // lanes of the same plan stand together
         let mut order: Vec<usize> = (0..jobs.len()).collect();

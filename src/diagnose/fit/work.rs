@@ -7,10 +7,21 @@
 
 use crate::fit::problem::{Grain, Problem};
 
-/// Multiplications that simulating all laws may take, and those that the leading ones take where it is
-/// more.
-const MOST: f64 = 1e11;
-const TAKEN: f64 = 2.5e9;
+/// How much work is done.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Work {
+    /// Multiplications that simulating all laws may take.
+    pub most: f64,
+    /// Those that the leading ones take where it is more.
+    pub taken: f64,
+}
+
+impl Default for Work {
+    fn default() -> Self {
+        Self { most: 1e11, taken: 2.5e9 }
+    }
+}
+
 /// Evaluations of the law in a step of the integrator.
 const STAGES: f64 = 4.0;
 /// Passes of a filter that one missing force takes: sizes that are tried, steps of two fits.
@@ -20,20 +31,21 @@ const SHARE: u64 = 3;
 
 /// How many of so many simulations are made, where not all of them are.
 pub(crate) fn affordable(problem: &Problem<'_>, simulations: usize) -> Option<usize> {
-    within(simulations, each(problem))
+    within(problem, simulations, each(problem))
 }
 
-/// How many of all missing forces are smoothed, where not all of them are; at least one. A pass of a Kalman
+/// How many of all missing forces are smoothed, where not all of them are. A pass of a Kalman
 /// filter with one state more takes samples x outputs x (n + 1)^2 multiplications.
 pub(crate) fn affordable_forces(problem: &Problem<'_>) -> Option<usize> {
     let n = problem.base.sizes;
     let pass = (problem.len() * n.y) as f64 * ((n.x + 1) as f64).powi(2);
-    within(n.w + n.u, PASSES * pass).map(|most| most.max(1))
+    within(problem, n.w + n.u, PASSES * pass)
 }
 
 /// How many of a number of things of the same work are done, where not all of them are.
-fn within(count: usize, each: f64) -> Option<usize> {
-    (count as f64 * each > MOST).then_some((TAKEN / each) as usize)
+fn within(problem: &Problem<'_>, count: usize, each: f64) -> Option<usize> {
+    let Work { most, taken } = problem.work;
+    (count as f64 * each > most).then_some((taken / each) as usize)
 }
 
 /// Bytes that derivatives along the record may take.
@@ -42,7 +54,7 @@ pub(crate) fn room(problem: &Problem<'_>) -> usize {
 }
 
 /// Multiplications of one simulation, were the model dense.
-fn each(problem: &Problem<'_>) -> f64 {
+pub(crate) fn each(problem: &Problem<'_>) -> f64 {
     let n = problem.base.sizes;
     let steps = problem.base.sampling_time / problem.step(Grain::Coarse);
     let stages = if problem.base.signals.time.is_continuous() { STAGES } else { 1.0 };

@@ -25,8 +25,17 @@ pub(crate) fn completed(
     // a model that leaves white noise lacks no force
     let bare = prepared.problem.simulate(&prepared.start, Grain::Fine);
     let lacks = !bare.is_some_and(|y| is_white(prepared, &y));
-    let missing = if lacks { missing(prepared, watch) } else { vec![] };
+    let sizes = prepared.problem.base.sizes;
+    let most = affordable_forces(&prepared.problem).filter(|_| lacks);
+    let missing = match most {
+        Some(0) => vec![],
+        _ if lacks => missing(prepared, most.unwrap_or(usize::MAX), watch),
+        _ => vec![],
+    };
     let mut of = Searched { missing, ..of };
+    if let Some(channels) = most {
+        of.notes.push(Note::ForcesLeftOut { channels, of: sizes.w + sizes.u });
+    }
     if let Some(disturbances) = chosen.inside.clone().filter(|all| !all.is_empty()) {
         of.notes.push(Note::Inside { disturbances });
     }
@@ -35,11 +44,12 @@ pub(crate) fn completed(
 
 /// The missing force of every channel where one is seen, or of those that the records call for most where
 /// all of them are too much work; none where the records do not tell.
-fn missing(prepared: &Prepared<'_>, watch: &dyn Watch) -> Vec<MissingForce> {
+fn missing(prepared: &Prepared<'_>, most: usize, watch: &dyn Watch) -> Vec<MissingForce> {
     watch.report(0.98, "smoothing the missing force");
-    let most = affordable_forces(&prepared.problem).unwrap_or(usize::MAX);
     let found = predictor(&prepared.problem, &prepared.start, &Allowed::default());
-    let found = found.and_then(|predictor| predictor.missing_of(most, &|| watch.stopped())).unwrap_or_default();
+    let found = found
+        .and_then(|predictor| predictor.missing_of(most, &|| watch.stopped()))
+        .unwrap_or_default();
     let seen = found.into_iter().filter(|force| force.is_seen());
     seen.map(|force| MissingForce {
         channel: force.channel,

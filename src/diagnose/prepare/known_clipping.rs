@@ -98,7 +98,7 @@ fn known_limits(
     let mut cause = Candidate::clone(found);
     // read off the record, so there is nothing to refine
     cause.refine = vec![];
-    cause.starts = vec![vec![low, high]];
+    cause.starts = Arc::new(vec![vec![low, high]]);
     Some((Arc::new(cause), vec![low, high]))
 }
 

@@ -15,7 +15,7 @@ use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::probes::Probe;
 use crate::effect::Mechanism;
 use crate::fit::adjoint::{Adjoint, Extent};
-use crate::fit::explained::Place;
+use crate::fit::explained::{Effect, Place};
 use crate::fit::problem::Problem;
 use crate::fit::work::{affordable, room};
 use crate::prepare::operating_range::Nominal;
@@ -48,6 +48,14 @@ enum Way<'a> {
     Not,
 }
 
+/// Which grid points are simulated, and what is known of them.
+pub(super) struct Ranked {
+    /// Candidates and their grid points.
+    pub leading: BTreeSet<(usize, usize)>,
+    /// Per probe the sum of squares of what a unit of it does, about; 0 where it was not asked.
+    pub squares: Vec<f64>,
+}
+
 /// The grid points that are simulated, where there are too many for all of them.
 pub(super) fn ranked(
     (problem, nominal): (&Problem<'_>, &Nominal),
@@ -55,7 +63,7 @@ pub(super) fn ranked(
     candidates: &[Arc<Candidate>],
     probes: &[Probe],
     watch: &dyn Watch,
-) -> Option<BTreeSet<(usize, usize)>> {
+) -> Option<Ranked> {
     let most = affordable(problem, probes.len())?;
     watch.report(0.06, "ranking candidates by their first order");
     let by = Ranker { problem, nominal };
@@ -63,8 +71,10 @@ pub(super) fn ranked(
     let parameters = ways.iter().any(|way| matches!(way, Way::Parameter(..)));
     let of = Extent { signs: SIGNS, parameters, room: room(problem) };
     let adjoint = Adjoint::new(problem, about, of, watch)?;
-    let scores = by.scores(&adjoint, (candidates, probes), &ways, watch);
-    Some(leading(probes, &scores, most))
+    let effects = by.effects(&adjoint, (candidates, probes), &ways, watch);
+    let scores: Vec<f64> = effects.iter().map(|effect| effect.explained).collect();
+    let squares = effects.iter().map(|effect| effect.squares).collect();
+    Some(Ranked { leading: leading(probes, &scores, most), squares })
 }
 
 /// Of every law the best grid points, of all of these the best.
@@ -136,21 +146,22 @@ impl Ranker<'_, '_> {
         Way::Law(Entering { effect: cause.effect, source, rate, parameters }, place)
     }
 
-    /// What each grid point explains; infinite where that is not asked.
-    fn scores(
+    /// What each grid point does; it explains infinitely much where that is not asked.
+    fn effects(
         &self,
         adjoint: &Adjoint,
         (candidates, probes): (&[Arc<Candidate>], &[Probe]),
         ways: &[Way<'_>],
         watch: &dyn Watch,
-    ) -> Vec<f64> {
-        let mut scores = vec![f64::INFINITY; probes.len()];
+    ) -> Vec<Effect> {
+        let unknown = Effect { explained: f64::INFINITY, squares: 0.0 };
+        let mut effects = vec![unknown; probes.len()];
         // the same law of the same coordinate enters many places
         let mut series: BTreeMap<&Entering<'_>, Vec<usize>> = BTreeMap::new();
         for (i, way) in ways.iter().enumerate() {
             match way {
                 Way::Law(entering, _) => series.entry(entering).or_default().push(i),
-                Way::Parameter(p, grows) => scores[i] = adjoint.parameter_explains(*p, *grows),
+                Way::Parameter(p, grows) => effects[i] = adjoint.parameter_explains(*p, *grows),
                 Way::Not => {}
             }
         }
@@ -169,17 +180,17 @@ impl Ranker<'_, '_> {
                     open_loop(cause.shape.as_ref(), &parameters, z, &adjoint.begins, self.problem);
                 let explains = |&i: &usize| match &ways[i] {
                     Way::Law(_, place) => (i, adjoint.explains(*place, &w)),
-                    _ => (i, f64::INFINITY),
+                    _ => (i, unknown),
                 };
-                own.iter().map(explains).collect::<Vec<(usize, f64)>>()
+                own.iter().map(explains).collect::<Vec<(usize, Effect)>>()
             };
             if watch.stopped() {
                 break;
             }
-            let found: Vec<Vec<(usize, f64)>> = block.par_iter().map(one).collect();
-            found.into_iter().flatten().for_each(|(i, score)| scores[i] = score);
+            let found: Vec<Vec<(usize, Effect)>> = block.par_iter().map(one).collect();
+            found.into_iter().flatten().for_each(|(i, effect)| effects[i] = effect);
         }
-        scores
+        effects
     }
 }
 
