@@ -89,7 +89,7 @@ mod tests {
         let law = candidate("a");
         assert!(!hills(&law, &z, &w).is_empty());
         let shape = effect("extra_mode");
-        let own = Candidate { card: shape.card(), shape, ..law };
+        let own = Candidate { card: shape.card().into(), shape, ..law };
         assert!(hills(&own, &z, &w).is_empty());
     }
 }

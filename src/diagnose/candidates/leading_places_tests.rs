@@ -24,7 +24,7 @@ fn row(hidden: &str) -> System {
     let list = |of: &dyn Fn(usize) -> String| (0..MASSES).map(of).collect::<Vec<_>>().join(", ");
     text += &format!("inputs = [{}]\n", list(&|i| format!("{{ name = \"u{i}\" }}")));
     let state = |i: usize| {
-        let pulled = if i == 0 { String::new() } else { format!(" + 3.0*x{}", i - 1) };
+        let pulled = if i == 0 { String::new() } else { format!(" + 0.5*x{}", i - 1) };
         format!(
             "{{ name = \"x{i}\", derivative = \"v{i}\" }}, \
              {{ name = \"v{i}\", derivative = \"u{i} - 5.0*x{i} - 0.7*v{i}{pulled}\" }}"
@@ -42,7 +42,7 @@ fn row(hidden: &str) -> System {
 /// A record of the row with a hard spring at one mass.
 fn record() -> Record {
     let machine =
-        row("[[effects]]\ninto = \"f3\"\nof = \"x3\"\neffect.cubic = { coefficient = -4.0 }\n");
+        row("[[effects]]\ninto = \"f3\"\nof = \"x3\"\neffect.cubic = { coefficient = -0.3 }\n");
     let mut random = Random::new(5);
     let mut driven = Record::new(0.05);
     for i in 0..MASSES {
@@ -54,7 +54,7 @@ fn record() -> Record {
     }
     let run = Simulation::of(&machine, &driven, Init::Samples(0)).unwrap();
     for (name, y) in run.outputs {
-        let y = y.into_iter().map(|y| y + 0.02 * random.normal()).collect();
+        let y: Vec<f64> = y.into_iter().map(|y| y + 0.02 * random.normal()).collect();
         driven = driven.output(&name, y).unwrap();
     }
     driven
@@ -127,5 +127,5 @@ fn learned_laws_of_the_leading_places_are_tried() {
     let made = problem.simulations.load(Ordering::Relaxed) - before;
     assert!(tried <= 20 && made <= 100 + 2 * MASSES, "{tried} laws by {made} simulations");
     assert_eq!(surfaces[0].cause.into, "f3");
-    assert_eq!(surfaces[0].cause.of.as_deref(), Some("x3"));
+    assert!(surfaces[0].cause.coordinates().contains(&"x3"), "{:?}", surfaces[0].cause.of);
 }

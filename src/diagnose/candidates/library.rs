@@ -102,7 +102,16 @@ pub(crate) fn library(
 impl<'a, 'b> Builder<'a, 'b> {
     pub(crate) fn new(problem: &'a Problem<'b>, nominal: &'a Nominal, lines: Vec<f64>) -> Self {
         let (pushes, stiffnesses) = (BTreeMap::new(), BTreeMap::new());
-        Self { problem, nominal, lines, found: vec![], card: None, grids: None, pushes, stiffnesses }
+        Self {
+            problem,
+            nominal,
+            lines,
+            found: vec![],
+            card: None,
+            grids: None,
+            pushes,
+            stiffnesses,
+        }
     }
 }
 

@@ -123,24 +123,27 @@ fn laws_together_explain_their_score_statistic() {
     let only = Allowed { only: vec!["cubic".into(), "linear".into()], ..Allowed::default() };
     let all = library(problem, nominal, start, vec![], &only, &());
     let size = 1e-8;
-    let here = all.iter().filter(|cause| cause.into == "v" && cause.of.as_deref() == Some("x"));
+    let here = all
+        .iter()
+        .filter(|cause| cause.into == "u" && matches!(cause.of.as_deref(), Some("x" | "v")));
     let (mut columns, mut terms): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (vec![], vec![]);
     for cause in here {
+        let Wire::Stage(route) = &cause.wire else { continue };
         let power = if cause.effect == "cubic" { 3 } else { 1 };
         let job = problem.job(&start.with(cause, vec![size]), Grain::Coarse).unwrap();
         let moved = problem.run(&[job], Span::Fit).swap_remove(0).unwrap();
         let moved = problem.residual(&moved, Part::Fit);
         columns.push(moved.iter().zip(&residual).map(|(a, b)| (b - a) / size).collect());
-        let source = problem.base.sources.find("x").unwrap();
-        terms.push(adjoint.seen[source].iter().map(|z| z.powi(power)).collect());
+        terms.push(adjoint.seen[route.source].iter().map(|z| z.powi(power)).collect());
     }
-    assert_eq!(columns.len(), 2);
+    let count = columns.len();
+    assert_eq!(count, 4);
     let mut own = vec![];
     columns.into_iter().for_each(|column| add_to_basis(&mut own, column));
     let exact: f64 = own.iter().map(|q| dot(q, &residual).powi(2)).sum();
     let at = |k: usize| terms.iter().enumerate().map(|(j, term)| (j, term[k])).collect();
     let terms: Vec<Vec<(usize, f64)>> = (0..terms[0].len()).map(at).collect();
-    let explained = adjoint.explain_together(Place::Force(1), 2, &terms);
+    let explained = adjoint.explain_together(Place::Force(2), count, &terms);
     // 600 signs: known within a twentieth
     assert!((explained / exact - 1.0).abs() < 0.2, "{explained} is not {exact}");
 }
