@@ -77,7 +77,7 @@ impl Drawing<'_, '_> {
         let spots = self.spots(&builder);
         let wanted = self.leading_spots(&at, &spots);
         let is_wanted = |i: &usize| wanted.as_ref().is_none_or(|wanted| wanted.contains(i));
-        let chosen = (0..spots.len()).filter(is_wanted);
+        let chosen = (0..spots.len()).filter(is_wanted).take_while(|_| !self.watch.stopped());
         let places = chosen.filter_map(|i| self.curves(&mut builder, &spots[i]));
         let places: Vec<Vec<Arc<Candidate>>> = places.collect();
         // all places with few knots, the leading ones with others too

@@ -53,7 +53,7 @@ impl Terms {
 impl Drawing<'_, '_> {
     /// The laws that are simulated, by their position, where `all` simulations are too much work; `terms`
     /// makes them of what every entry of the source table does. What has no place in the adjoint is
-    /// simulated whatever it explains.
+    /// simulated whatever it explains; nothing where somebody asks to stop.
     pub(super) fn leading(
         &self,
         at: &At<'_>,
@@ -64,7 +64,11 @@ impl Drawing<'_, '_> {
         let most = affordable(self.problem, all)?;
         let about = About { model: at.model, residual: &at.now, basis: &at.basis };
         let of = Extent { signs: SIGNS, parameters: false, room: room(self.problem) };
-        let adjoint = Adjoint::new(self.problem, &about, of, self.watch)?;
+        let adjoint = Adjoint::new(self.problem, &about, of, self.watch);
+        if self.watch.stopped() {
+            return Some(BTreeSet::new());
+        }
+        let adjoint = adjoint?;
         let terms = terms(&adjoint.seen);
         let score = |asked: &Asked| {
             let place = Place::of((self.problem, self.nominal), asked.target, asked.own_path);

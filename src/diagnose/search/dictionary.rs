@@ -78,7 +78,7 @@ pub(super) fn dictionary(
     let present = rough.unwrap_or_else(|| residual.to_vec());
     let size = rms(residual);
     let gentle = (GENTLE.0 * spread).min(GENTLE.1 * size);
-    let mut sharing = Sharing { problem, model, kinds: vec![], grain };
+    let mut sharing = Sharing { problem, model, kinds: vec![], grain, watch };
     let mut probes = vec![];
     for (candidate, cause) in candidates.iter().enumerate() {
         for start in 0..cause.starts.len() {

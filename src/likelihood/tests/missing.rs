@@ -72,7 +72,7 @@ fn nothing_missing_is_seen_as_nothing() {
 
 #[test]
 fn of_some_channels_the_one_that_is_called_for_is_asked() {
-    // the friction is at the load's joint, the drive's channel comes first
+    // a random force in either of the channels
     for (channel, seed) in [(0, 4), (1, 5)] {
         let names = Predictor::new(&system(GANTRY), &[still()]).unwrap().forces();
         let mut sizes = Sizes { measurement: vec![0.002, 0.004], ..Sizes::default() };
