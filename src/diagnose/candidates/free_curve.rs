@@ -4,10 +4,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::candidates::candidate::Candidate;
-use crate::candidates::leading_places::{Asked, Terms};
+use crate::candidates::leading_places::{Asked, Terms, leading};
 use crate::candidates::library::{Builder, Spot};
 use crate::candidates::smoothing::{Smoothed, bends, smoothed};
 use crate::effect::{Effect, View, curve};
+use crate::fit::adjoint::About;
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Job, Model, Part, Problem, Span};
 use crate::plugins::effects::free_form::FreeForm;
@@ -59,6 +60,12 @@ pub(crate) struct At<'a> {
     pub model: &'a Model,
     pub now: Vec<f64>,
     pub basis: Vec<Vec<f64>>,
+}
+
+impl At<'_> {
+    pub(super) fn about(&self) -> About<'_> {
+        About { model: self.model, residual: &self.now, basis: &self.basis }
+    }
 }
 
 impl Drawing<'_, '_> {
@@ -148,7 +155,7 @@ impl Drawing<'_, '_> {
             asked.push(Asked { target, own_path, law, simulations: place.knots[0].len() });
         }
         let all = asked.iter().map(|asked| asked.simulations).sum();
-        self.leading(at, &asked, all, |seen| {
+        let terms = |seen: &[Vec<f64>]| {
             let mut terms: Vec<(usize, Terms)> = sources
                 .iter()
                 .map(|(&source, (law, knots))| {
@@ -163,7 +170,8 @@ impl Drawing<'_, '_> {
                 .collect();
             terms.sort_by_key(|(law, _)| *law);
             terms.into_iter().map(|(_, terms)| terms).collect()
-        })
+        };
+        leading((self.problem, self.nominal), &at.about(), &asked, all, terms, self.watch)
     }
 
     /// Curves without a value at a place; they differ in their knots.

@@ -7,7 +7,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::candidates::candidate::Candidate;
 use crate::candidates::free_curve::{At, Drawing, PROBE};
-use crate::candidates::leading_places::{Asked, Terms};
+use crate::candidates::leading_places::{Asked, Terms, leading};
 use crate::candidates::library::{Builder, Spot};
 use crate::candidates::products::Tensor;
 use crate::candidates::smoothing::{Smoothed, smoothed};
@@ -81,13 +81,13 @@ impl Drawing<'_, '_> {
             .take(PAIRS)
             .collect();
         let targets: Vec<usize> = groups.iter().map(|group| group[0].0).collect();
-        let leading = self.leading_laws(&at, &targets, &moving, &pairs);
+        let chosen = self.leading_laws(&at, &targets, &moving, &pairs);
         let laws = moving.len() + pairs.len();
         let (mut surfaces, mut tried) = (vec![], 0);
         for (number, group) in groups.iter().enumerate() {
             let target = group[0].0;
             let wants = |law: usize| {
-                leading.as_ref().is_none_or(|leading| leading.contains(&(number * laws + law)))
+                chosen.as_ref().is_none_or(|chosen| chosen.contains(&(number * laws + law)))
             };
             let open: Vec<usize> = (0..pairs.len()).filter(|i| wants(moving.len() + i)).collect();
             let with = |i: usize| open.iter().any(|&p| pairs[p].0 == i || pairs[p].1 == i);
@@ -163,7 +163,7 @@ impl Drawing<'_, '_> {
             }
         }
         let each = moving.len() * SINGLE.len() + pairs.len() * PRODUCTS.len() + 1;
-        self.leading(at, &asked, targets.len() * each, |seen| {
+        let terms = |seen: &[Vec<f64>]| {
             let powers: Vec<Vec<Vec<f64>>> =
                 moving.iter().map(|one| one.powers(&seen[one.source])).collect();
             let of_one = powers.iter().map(|own| Terms::new(own));
@@ -175,7 +175,9 @@ impl Drawing<'_, '_> {
                 Terms::new(&terms)
             });
             of_one.chain(of_two).collect()
-        })
+        };
+        let all = targets.len() * each;
+        leading((self.problem, self.nominal), &at.about(), &asked, all, terms, self.watch)
     }
 
     /// The range of a coordinate, if it has one.

@@ -9,10 +9,12 @@ use std::collections::BTreeSet;
 
 use rayon::prelude::*;
 
-use crate::candidates::free_curve::{At, Drawing};
 use crate::fit::adjoint::{About, Adjoint, Extent};
+use crate::fit::affordable::{affordable, room};
 use crate::fit::explained::Place;
-use crate::fit::work::{affordable, room};
+use crate::fit::problem::Problem;
+use crate::prepare::operating_range::Nominal;
+use crate::watch::Watch;
 
 /// Sums with random signs: what fifteen numbers explain is known within a fifth.
 const SIGNS: usize = 64;
@@ -50,44 +52,42 @@ impl Terms {
     }
 }
 
-impl Drawing<'_, '_> {
-    /// The laws that are simulated, by their position, where `all` simulations are too much work; `terms`
-    /// makes them of what every entry of the source table does. What has no place in the adjoint is
-    /// simulated whatever it explains; nothing where somebody asks to stop.
-    pub(super) fn leading(
-        &self,
-        at: &At<'_>,
-        asked: &[Asked],
-        all: usize,
-        terms: impl FnOnce(&[Vec<f64>]) -> Vec<Terms>,
-    ) -> Option<BTreeSet<usize>> {
-        let most = affordable(self.problem, all)?;
-        let about = About { model: at.model, residual: &at.now, basis: &at.basis };
-        let of = Extent { signs: SIGNS, parameters: false, room: room(self.problem) };
-        let adjoint = Adjoint::new(self.problem, &about, of, self.watch);
-        if self.watch.stopped() {
-            return Some(BTreeSet::new());
-        }
-        let adjoint = adjoint?;
-        let terms = terms(&adjoint.seen);
-        let score = |asked: &Asked| {
-            let place = Place::of((self.problem, self.nominal), asked.target, asked.own_path);
-            let Terms { count, at } = &terms[asked.law];
-            place.map_or(f64::INFINITY, |place| adjoint.explain_together(place, *count, at))
-        };
-        let mut scores: Vec<f64> = vec![];
-        for block in asked.chunks(AT_ONCE).take_while(|_| !self.watch.stopped()) {
-            scores.extend(block.par_iter().map(score).collect::<Vec<f64>>());
-        }
-        let mut order: Vec<usize> = (0..scores.len()).collect();
-        order.sort_by(|&a, &b| scores[b].total_cmp(&scores[a]).then(a.cmp(&b)));
-        let mut taken = 0;
-        let fits = |&i: &usize| {
-            taken += if scores[i].is_infinite() { 0 } else { asked[i].simulations };
-            taken <= most
-        };
-        Some(order.into_iter().take_while(fits).collect())
+/// The laws that are simulated, by their position, where `all` simulations are too much work; `terms`
+/// makes them of what every entry of the source table does. What has no place in the adjoint is
+/// simulated whatever it explains; nothing where somebody asks to stop.
+pub(super) fn leading(
+    (problem, nominal): (&Problem<'_>, &Nominal),
+    about: &About<'_>,
+    asked: &[Asked],
+    all: usize,
+    terms: impl FnOnce(&[Vec<f64>]) -> Vec<Terms>,
+    watch: &dyn Watch,
+) -> Option<BTreeSet<usize>> {
+    let most = affordable(problem, all)?;
+    let of = Extent { signs: SIGNS, parameters: false, room: room(problem) };
+    let adjoint = Adjoint::new(problem, about, of, watch);
+    if watch.stopped() {
+        return Some(BTreeSet::new());
     }
+    let adjoint = adjoint?;
+    let terms = terms(&adjoint.seen);
+    let score = |asked: &Asked| {
+        let place = Place::of((problem, nominal), asked.target, asked.own_path);
+        let Terms { count, at } = &terms[asked.law];
+        place.map_or(f64::INFINITY, |place| adjoint.joint_score(place, *count, at))
+    };
+    let mut scores: Vec<f64> = vec![];
+    for block in asked.chunks(AT_ONCE).take_while(|_| !watch.stopped()) {
+        scores.extend(block.par_iter().map(score).collect::<Vec<f64>>());
+    }
+    let mut order: Vec<usize> = (0..scores.len()).collect();
+    order.sort_by(|&a, &b| scores[b].total_cmp(&scores[a]).then(a.cmp(&b)));
+    let mut taken = 0;
+    let fits = |&i: &usize| {
+        taken += if scores[i].is_infinite() { 0 } else { asked[i].simulations };
+        taken <= most
+    };
+    Some(order.into_iter().take_while(fits).collect())
 }
 
 #[cfg(test)]

@@ -5,15 +5,15 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use lacuna_core::file::{Format, parse};
 
 use super::*;
-use crate::candidates::free_curve::Sketch;
+use crate::candidates::free_curve::{Drawing, Sketch};
 use crate::data::{Random, Record};
 use crate::evaluate::{Init, Simulation};
+use crate::fit::affordable::each;
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::Grain;
-use crate::fit::work::{Work, each};
+use crate::fit::work::Work;
 use crate::prepare::prepared::Prepared;
 use crate::system::System;
-use crate::watch::Watch;
 
 /// Masses in a row, each driven and measured: twice as many states as inputs and outputs.
 const MASSES: usize = 6;
@@ -85,8 +85,8 @@ fn of_too_many_places_the_leading_ones_are_drawn_and_the_best_is_the_same() {
     }
     assert_eq!(all[0].values, some[0].values);
     // beside nine knots of every place: the states' tangents, and finer knots of the best eight
-    let beside = 2 * MASSES + 8 * (13 + 19);
-    assert!(few <= 90 + beside, "{few}");
+    let others = 2 * MASSES + 8 * (13 + 19);
+    assert!(few <= 90 + others, "{few}");
     assert!(many > few + 9 * 2 * MASSES, "{many} and {few}");
 }
 

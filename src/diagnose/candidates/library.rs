@@ -76,13 +76,10 @@ pub(crate) fn library(
         !parameter.fixed && !allowed.fixed.contains(&parameter.name)
     };
     for (name, shape) in registered.chain(written) {
-        if !allowed.effect(name) {
+        if !allowed.effect(name) || shape.card().mechanism == Mechanism::Data {
             continue;
         }
         let declared = shape.card();
-        if declared.mechanism == Mechanism::Data {
-            continue;
-        }
         if declared.places.parameter {
             builder.parameters(name, shape.as_ref(), &declared, model, &is_free);
         }
@@ -102,16 +99,8 @@ pub(crate) fn library(
 impl<'a, 'b> Builder<'a, 'b> {
     pub(crate) fn new(problem: &'a Problem<'b>, nominal: &'a Nominal, lines: Vec<f64>) -> Self {
         let (pushes, stiffnesses) = (BTreeMap::new(), BTreeMap::new());
-        Self {
-            problem,
-            nominal,
-            lines,
-            found: vec![],
-            card: None,
-            grids: None,
-            pushes,
-            stiffnesses,
-        }
+        let (found, card, grids) = (vec![], None, None);
+        Self { problem, nominal, lines, found, card, grids, pushes, stiffnesses }
     }
 }
 

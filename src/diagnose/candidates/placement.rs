@@ -1,7 +1,5 @@
 //! Where each effect may sit in a model: parameters, paths, channels, beside.
 
-use std::sync::Arc;
-
 use crate::candidates::candidate::{Candidate, Preference, Wire};
 use crate::candidates::library::{Builder, Spot};
 use crate::candidates::stiffness::Stiffness;
@@ -18,16 +16,13 @@ impl Builder<'_, '_> {
         model: &Model,
         wanted: &dyn Fn(usize) -> bool,
     ) {
+        let mut card = card.clone();
+        card.parameters[0].value = 0.0;
+        let card = self.shared(&card);
         let signals = &self.problem.base.signals;
         let duration = self.problem.len() as f64 * self.problem.base.sampling_time;
-        for (p, parameter) in signals.parameters.iter().enumerate() {
-            if !wanted(p) {
-                continue;
-            }
+        for (p, parameter) in signals.parameters.iter().enumerate().filter(|(p, _)| wanted(*p)) {
             let value = model.theta[p];
-            let mut card = card.clone();
-            card.parameters[0].value = 0.0;
-            let card = self.shared(&card);
             let changes = card.mechanism == Mechanism::Parameter;
             // a change of the value, kept inside the parameter's own bounds and of its sign
             let floor = if value > 0.0 { parameter.min.max(0.05 * value) } else { parameter.min };
@@ -51,7 +46,7 @@ impl Builder<'_, '_> {
                 place: Preference::Parameter,
                 linear: vec![0],
                 refine: vec![],
-                starts: Arc::new(vec![vec![0.0]]),
+                starts: vec![vec![0.0]].into(),
                 min: vec![range.0],
                 max: vec![range.1],
                 thresholds: false,
@@ -62,7 +57,7 @@ impl Builder<'_, '_> {
                 named: Named::default(),
                 units: (parameter.unit.clone(), "s".into()),
                 twins: vec![],
-                card,
+                card: card.clone(),
             });
         }
     }

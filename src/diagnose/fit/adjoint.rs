@@ -23,7 +23,7 @@ use crate::watch::Watch;
 
 /// Samples after which it is asked whether to stop, and those that one thread follows along parameters.
 const AT_ONCE: usize = 128;
-const TOGETHER: usize = 256;
+const BLOCK: usize = 256;
 
 /// Derivatives of one sample, row by row.
 #[derive(PartialEq)]
@@ -238,13 +238,11 @@ impl Adjoint {
     ) -> Option<[Vec<f64>; 2]> {
         let drive = problem.fit_drive();
         let given = (&lane.theta[..], &lane.effect_values[..]);
-        let (n, ny, nt) = (course.n, problem.y.len(), lane.theta.len());
-        let each = self.sums;
-        let mut pieces = vec![];
-        let mut first = 0;
+        let (n, ny, nt, each) = (course.n, problem.y.len(), lane.theta.len(), self.sums);
+        let (mut pieces, mut first) = (vec![], 0);
         for (number, segment) in drive.segments.iter().enumerate() {
-            for from in segment.clone().step_by(TOGETHER) {
-                let to = segment.end.min(from + TOGETHER);
+            for from in segment.clone().step_by(BLOCK) {
+                let to = segment.end.min(from + BLOCK);
                 pieces.push((number, from..to, first));
                 first += to - from;
             }

@@ -71,7 +71,7 @@ impl Adjoint {
 
     /// What `count` laws explain together that enter at a place: of every sample those that are not 0,
     /// with their values.
-    pub fn explain_together(&self, place: Place, count: usize, laws: &[Vec<(usize, f64)>]) -> f64 {
+    pub fn joint_score(&self, place: Place, count: usize, laws: &[Vec<(usize, f64)>]) -> f64 {
         let sums = self.sums;
         let mut all = vec![0.0; count * sums];
         for (own, laws) in self.at(place).zip(laws) {

@@ -143,7 +143,7 @@ fn laws_together_explain_their_score_statistic() {
     let exact: f64 = own.iter().map(|q| dot(q, &residual).powi(2)).sum();
     let at = |k: usize| terms.iter().enumerate().map(|(j, term)| (j, term[k])).collect();
     let terms: Vec<Vec<(usize, f64)>> = (0..terms[0].len()).map(at).collect();
-    let explained = adjoint.explain_together(Place::Force(2), count, &terms);
+    let explained = adjoint.joint_score(Place::Force(2), count, &terms);
     // 600 signs: known within a twentieth
     assert!((explained / exact - 1.0).abs() < 0.2, "{explained} is not {exact}");
 }

@@ -1,6 +1,7 @@
 //! Fits of models to records: residuals, step sizes, nuisance, least squares, covariances.
 
 pub(crate) mod adjoint;
+pub(crate) mod affordable;
 pub(crate) mod allowing;
 pub(crate) mod block_jacobian;
 pub(crate) mod collinear;

@@ -6,9 +6,10 @@ use crate::candidates::library::Allowed;
 use crate::findings::cause::{ExplainedBy, MissingForce};
 use crate::findings::hand_over::Searched;
 use crate::findings::note::Note;
+use crate::fit::affordable::affordable_forces;
 use crate::fit::finished::Finished;
 use crate::fit::problem::Grain;
-use crate::fit::work::affordable_forces;
+
 use crate::prepare::prepared::Prepared;
 use crate::watch::Watch;
 

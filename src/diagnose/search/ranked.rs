@@ -1,6 +1,6 @@
 //! Which grid points of a very large library are simulated: those that explain most to first order.
 //!
-//! Where simulating every law at every place is more than a stated amount of [`work`](crate::fit::work),
+//! Where simulating every law at every place is more than a stated amount of [`work`](crate::fit::affordable),
 //! all are ranked by one [`Adjoint`] run first, each by (r'dy)^2 / dy'dy, and only the leading ones are
 //! simulated (sure independence screening: Fan and Lv, JRSS B 70, 2008).
 
@@ -15,9 +15,9 @@ use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::probes::Probe;
 use crate::effect::Mechanism;
 use crate::fit::adjoint::{Adjoint, Extent};
+use crate::fit::affordable::{affordable, room};
 use crate::fit::explained::{Effect, Place};
 use crate::fit::problem::Problem;
-use crate::fit::work::{affordable, room};
 use crate::prepare::operating_range::Nominal;
 use crate::system::Origin;
 use crate::watch::Watch;
