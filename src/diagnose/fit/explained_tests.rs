@@ -111,7 +111,7 @@ fn sums_of_outputs_are_followed_back_through_the_steps_of_an_integrator() {
 
 /// What a curve of several numbers does by simulation, against what the adjoint says of it.
 #[test]
-fn laws_together_explain_their_score_statistic() {
+fn several_laws_explain_their_score_statistic() {
     let system = parse(&model("discrete"), "machine.toml", Format::Toml).unwrap();
     let prepared = Prepared::new(&system, &[record()], 0.7).unwrap();
     let (problem, nominal) = (&prepared.problem, &prepared.nominal);
