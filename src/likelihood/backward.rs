@@ -92,17 +92,6 @@ impl Back {
         0.5 * (self.r()[i] * self.r()[i] - self.n.plain(i)[i])
     }
 
-    /// g'r and its variance g'Ng for a column g.
-    pub fn along(&self, g: &[f64]) -> (f64, f64) {
-        let (mut along, mut size) = (0.0, 0.0);
-        for (i, gi) in g.iter().enumerate().filter(|(_, gi)| **gi != 0.0) {
-            along += gi * self.r()[i];
-            let row = self.n.plain(i);
-            size += gi * g.iter().zip(row).map(|(g, n)| g * n).sum::<f64>();
-        }
-        (along, size)
-    }
-
     /// The slope along the variance of a component that enters between samples `k` and `k + 1`.
     pub fn process(&mut self, path: &Path, k: usize, layout: &Layout, of: Component) -> f64 {
         let (n, nf) = (path.n, path.forces);

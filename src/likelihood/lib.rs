@@ -20,7 +20,6 @@ use lacuna_core::{data, effect, evaluate, fault, optimise, real, register, stati
 mod ahead;
 mod autoregressive;
 mod backward;
-mod called_for;
 mod error;
 mod evidence;
 mod exchange;
