@@ -24,7 +24,7 @@ fn pushed(system: &System) -> (Prepared<'_>, [Added; 2]) {
     let record = Record::new(0.1).input("u", u).unwrap().output("y", y).unwrap();
     let prepared = Prepared::new(system, &[record], 0.7).unwrap();
     let allowed = Allowed::default();
-    let all = library(&prepared.problem, &prepared.nominal, &prepared.start, vec![], &allowed);
+    let all = library(&prepared.problem, &prepared.nominal, &prepared.start, vec![], &allowed, &());
     let added = |effect: &str, parameters: Vec<f64>| {
         let mut into_push = all.iter().filter(|c| c.into == "push");
         let cause = into_push.find(|c| c.effect == effect).unwrap().clone();

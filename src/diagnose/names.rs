@@ -77,7 +77,7 @@ impl Diagnosis<'_> {
             let counted = Counted::From(records.iter().map(kept_from).collect());
             let test = TestData { records: records.to_vec(), counted };
             let (start, fixed, firsts) = (&whole.start, &self.allowed.fixed, firsts(records));
-            let from = Source { start, test: &test, used: &used, firsts: &firsts, fixed };
+            let from = Source { start, test: &test, used: &used, firsts: &firsts, fixed, watch };
             context.held_instead(&chosen, &from, &mut causes);
         }
         Ok(causes)

@@ -194,9 +194,9 @@ impl Diagnosis<'_> {
         watch.report(0.97, "measuring the gain");
         let firsts = firsts(records);
         let (start, fixed) = (&whole.start, &self.allowed.fixed);
-        let from = Source { start, test: &test, used, firsts: &firsts, fixed };
+        let from = Source { start, test: &test, used, firsts: &firsts, fixed, watch };
         let searched = whole.context().findings(&chosen, other.as_ref(), &from)?;
-        Ok(innovations::completed(looked_at.as_ref().unwrap_or(&whole), &chosen, searched))
+        Ok(innovations::completed(looked_at.as_ref().unwrap_or(&whole), &chosen, searched, watch))
     }
 
     /// What a search finds on the samples that it may use, of each record a share to fit; fitted to all

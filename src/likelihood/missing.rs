@@ -83,14 +83,36 @@ impl Predictor {
     ///
     /// [`LikelihoodError::Diverges`] if no noise keeps the predictor among the finite numbers.
     pub fn missing(&self) -> Result<Vec<MissingForce>, LikelihoodError> {
+        self.missing_of(usize::MAX, &|| false)
+    }
+
+    /// The same of so many channels at most, those in which a walk makes the record most likely before any fit; of
+    /// fewer where somebody asks to stop.
+    ///
+    /// # Errors
+    ///
+    /// As [`missing`](Self::missing).
+    #[doc(hidden)]
+    pub fn missing_of(
+        &self,
+        most: usize,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Vec<MissingForce>, LikelihoodError> {
+        if stop() {
+            return Ok(vec![]);
+        }
         let path = self.tracking(&self.model)?;
         let start = self.white(self.spread.iter().map(|s| s * s + f64::MIN_POSITIVE).collect());
         let without = most_likely(&path, &start, &start.components()).1;
-        let channels = self.distinct(&path);
-        let mut found = channels
-            .par_iter()
-            .map(|&c| self.force(&path, c, without))
-            .collect::<Result<Vec<_>, _>>()?;
+        let mut channels = self.distinct(&path);
+        if channels.len() > most {
+            let likely = |&c: &usize| (self.walks(&path, c, &NOISES[1..2]).1, c);
+            let mut order: Vec<(f64, usize)> = channels.par_iter().map(likely).collect();
+            order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+            channels = order.into_iter().map(|(_, c)| c).take(most).collect();
+        }
+        let force = |&c: &usize| (!stop()).then(|| self.force(&path, c, without));
+        let mut found = channels.par_iter().filter_map(force).collect::<Result<Vec<_>, _>>()?;
         let values: Vec<(String, f64)> =
             found.iter().map(|f| (f.channel.clone(), f.gain)).collect();
         for force in &mut found {
@@ -136,18 +158,24 @@ impl Predictor {
 
     /// The most likely measurement noise and random walk on one channel.
     fn walking(&self, path: &Path, c: usize) -> Noise {
+        let noise = self.walks(path, c, &NOISES).0;
+        most_likely(path, &noise, &noise.components()).0
+    }
+
+    /// The most likely of some walks on one channel, and its log likelihood, all variances by a common
+    /// factor.
+    fn walks(&self, path: &Path, c: usize, noises: &[f64]) -> (Noise, f64) {
         let scale = path.force_scales()[c];
         let tried = SIZES.iter().flat_map(|size| {
-            NOISES.iter().map(move |left| {
+            noises.iter().map(move |left| {
                 let measurement = self.spread.iter().map(|s| left * s * s + f64::MIN_POSITIVE);
                 let mut noise = self.white(measurement.collect());
                 noise.slow[c] = Slow::walk(size * scale * scale);
                 concentrated(path, &noise)
             })
         });
-        let best = tried.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(noise, _)| noise);
-        let noise = best.unwrap_or_else(|| self.white(self.spread.clone()));
-        most_likely(path, &noise, &noise.components()).0
+        let best = tried.max_by(|a, b| a.1.total_cmp(&b.1));
+        best.unwrap_or_else(|| (self.white(self.spread.clone()), f64::NEG_INFINITY))
     }
 
     /// The shares of every coordinate in a force, the largest first; `states` are where to look.

@@ -1,6 +1,7 @@
 //! Linear time-invariant models: x' = A x + B u, y = C x + D u + offset.
 
 mod named;
+mod product;
 
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
@@ -249,37 +250,6 @@ impl Physics for Lti {
     fn innovation_gain(&self) -> Option<DMatrix<f64>> {
         let (n, _, ny) = self.dimensions();
         (!self.k.is_empty()).then(|| DMatrix::from_fn(n, ny, |i, j| self.k[i][j]))
-    }
-}
-
-impl Lti {
-    /// to = first table * x + second table * u, with the parameters in place of the entries
-    /// that are parameters. The order of parameters is that of [`Lti::entries`].
-    #[inline(always)]
-    fn multiply<R: Real>(&self, at: &At<R>, to: &mut [R], which: [usize; 2]) {
-        let tables = self.tables();
-        let mut next = 0;
-        for table in &tables[..which[0]] {
-            next += table.1.iter().flatten().filter(|v| **v != 0.0 && **v != 1.0).count();
-        }
-        for value in to.iter_mut() {
-            *value = R::constant(0.0);
-        }
-        for (t, by) in which.into_iter().zip([at.x, at.u]) {
-            for (i, row) in tables[t].1.iter().enumerate() {
-                for (j, &value) in row.iter().enumerate() {
-                    if value == 0.0 {
-                        continue;
-                    }
-                    if value == 1.0 {
-                        to[i] += by[j];
-                    } else {
-                        to[i] += at.theta[next] * by[j];
-                        next += 1;
-                    }
-                }
-            }
-        }
     }
 }
 

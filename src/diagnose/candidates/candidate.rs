@@ -1,5 +1,7 @@
 //! One supposed cause: an effect at a place, with what is free in it.
 
+use std::sync::Arc;
+
 use crate::candidates::stiffness::Stiffness;
 use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Needs, Role, ShapeOf};
 use crate::system::{AlsoInto, Placed, Route};
@@ -38,7 +40,7 @@ pub(crate) struct Candidate {
     /// Registered name.
     pub effect: &'static str,
     pub shape: Box<dyn CandidateEffect>,
-    pub card: EffectCard,
+    pub card: Arc<EffectCard>,
     pub into: String,
     pub of: Option<String>,
     pub also_into: Vec<AlsoInto>,
@@ -53,7 +55,7 @@ pub(crate) struct Candidate {
     /// Shape parameters that are refined.
     pub refine: Vec<usize>,
     /// Grid of starting values of all parameters.
-    pub starts: Vec<Vec<f64>>,
+    pub starts: Arc<Vec<Vec<f64>>>,
     pub min: Vec<f64>,
     pub max: Vec<f64>,
     /// Whether thresholds are tried on a finer grid before refining.

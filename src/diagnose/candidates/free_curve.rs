@@ -1,17 +1,21 @@
 //! Free curves of every coordinate into every channel, to first order.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use crate::candidates::candidate::Candidate;
+use crate::candidates::leading_places::{Asked, Terms, leading};
 use crate::candidates::library::{Builder, Spot};
 use crate::candidates::smoothing::{Smoothed, bends, smoothed};
-use crate::effect::{Effect, View};
+use crate::effect::{Effect, View, curve};
+use crate::fit::adjoint::About;
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Job, Model, Part, Problem, Span};
 use crate::plugins::effects::free_form::FreeForm;
 use crate::prepare::operating_range::Nominal;
 use crate::statistics::project;
 use crate::system::Origin;
+use crate::watch::Watch;
 
 /// The effect's name.
 pub(crate) const NAME: &str = "free_form";
@@ -29,6 +33,16 @@ pub(crate) struct Drawing<'a, 'b> {
     pub problem: &'a Problem<'b>,
     pub nominal: &'a Nominal,
     pub nuisance: &'a Nuisance,
+    pub watch: &'a dyn Watch,
+}
+
+/// Where a curve may be.
+struct Place {
+    spot: Spot,
+    /// Channels that push the same way, with their factors.
+    others: Vec<(usize, f64)>,
+    /// Knots, fewer first.
+    knots: Arc<[Vec<f64>]>,
 }
 
 /// A curve to first order.
@@ -48,6 +62,12 @@ pub(crate) struct At<'a> {
     pub basis: Vec<Vec<f64>>,
 }
 
+impl At<'_> {
+    pub(super) fn about(&self) -> About<'_> {
+        About { model: self.model, residual: &self.now, basis: &self.basis }
+    }
+}
+
 impl Drawing<'_, '_> {
     /// The curves that predict most of what a model leaves, given its outputs; best first, one
     /// per place.
@@ -55,14 +75,22 @@ impl Drawing<'_, '_> {
         let now = self.problem.residual(y, Part::Fit);
         let basis = self.nuisance.basis(self.problem, model, y);
         let at = At { model, now, basis };
+        let going_on = |places| <[Vec<_>]>::iter(places).take_while(|_| !self.watch.stopped());
         let best = |causes: &[Arc<Candidate>]| {
             let drawn = causes.iter().filter_map(|cause| self.sketch(&at, cause));
             drawn.max_by(|a, b| a.share.total_cmp(&b.share))
         };
-        let places = self.places();
+        let mut builder = Builder::new(self.problem, self.nominal, vec![]);
+        let spots = self.spots(&builder);
+        let wanted = self.leading_spots(&at, &spots);
+        let is_wanted = |i: &usize| wanted.as_ref().is_none_or(|wanted| wanted.contains(i));
+        let chosen = (0..spots.len()).filter(is_wanted).take_while(|_| !self.watch.stopped());
+        let places = chosen.filter_map(|i| self.curves(&mut builder, &spots[i]));
+        let places: Vec<Vec<Arc<Candidate>>> = places.collect();
         // all places with few knots, the leading ones with others too
-        let mut leading: Vec<(Sketch, &[Arc<Candidate>])> =
-            places.iter().filter_map(|causes| Some((best(&causes[..1])?, &causes[1..]))).collect();
+        let mut leading: Vec<(Sketch, &[Arc<Candidate>])> = going_on(&places)
+            .filter_map(|causes| Some((best(&causes[..1])?, &causes[1..])))
+            .collect();
         leading.sort_by(|a, b| b.0.share.total_cmp(&a.0.share));
         leading.truncate(LEADING);
         let finer = leading.into_iter().map(|(few, causes)| match best(causes) {
@@ -74,12 +102,9 @@ impl Drawing<'_, '_> {
         sketches
     }
 
-    /// Curves without a value of every coordinate into every channel, and on the paths of
-    /// inputs and outputs; those of one place differ in their knots.
-    fn places(&self) -> Vec<Vec<Arc<Candidate>>> {
+    /// Every coordinate into every channel, and the paths of inputs and outputs.
+    fn spots(&self, builder: &Builder<'_, '_>) -> Vec<Place> {
         let base = self.problem.base.clone();
-        let lines = vec![];
-        let mut builder = Builder::new(self.problem, self.nominal, lines);
         let mut spots: Vec<(Spot, Vec<(usize, f64)>)> = vec![];
         let groups = builder.channels();
         let sources = builder.sources();
@@ -102,50 +127,90 @@ impl Drawing<'_, '_> {
                 spots.push((Spot { target, source, own_path: true }, vec![]));
             }
         }
-        let mut places = vec![];
-        for (spot, others) in spots {
-            let Some(source) = spot.source else { continue };
-            let view = View::new(self.nominal.series(source), base.sampling_time);
-            if !(view.range() > 0.0) {
-                continue;
-            }
-            let of = base.sources.entries[source].0.name.clone();
-            let twins: Vec<_> = others
-                .iter()
-                .map(|&(t, by)| (base.targets.entries[t].0.name.clone(), Some(of.clone()), by))
-                .collect();
-            let first = builder.found.len();
-            for count in KNOTS {
-                let knots = knots(&view, count);
-                if knots.len() < FEWEST {
-                    continue;
-                }
-                let shape = FreeForm { values: vec![0.0; knots.len()], knots };
-                let card = Effect::card(&shape);
-                builder.push(NAME, &shape, &card, spot, 0.0, None, twins.clone());
-            }
-            let probe = PROBE * self.nominal.natural[spot.target];
-            let causes = builder.found.drain(first..);
-            let causes: Vec<_> =
-                causes.map(|cause| Arc::new(Candidate { probe, ..cause })).collect();
-            if !causes.is_empty() {
-                places.push(causes);
-            }
+        let mut known: BTreeMap<usize, Arc<[Vec<f64>]>> = BTreeMap::new();
+        let place = |(spot, others): (Spot, Vec<(usize, f64)>)| {
+            let knots = known.entry(spot.source?).or_insert_with_key(|&source| self.knots(source));
+            (!knots.is_empty()).then(|| Place { spot, others, knots: knots.clone() })
+        };
+        spots.into_iter().filter_map(place).collect()
+    }
+
+    /// Knots of curves of a source, fewer first; none where it does not move.
+    fn knots(&self, source: usize) -> Arc<[Vec<f64>]> {
+        let view = View::new(self.nominal.series(source), self.problem.base.sampling_time);
+        let counts = if view.range() > 0.0 { &KNOTS[..] } else { &[] };
+        let all = counts.iter().map(|&count| knots(&view, count));
+        all.filter(|knots| knots.len() >= FEWEST).collect()
+    }
+
+    /// The places that are drawn, where drawing all of them is too much work.
+    fn leading_spots(&self, at: &At<'_>, places: &[Place]) -> Option<BTreeSet<usize>> {
+        let first = |place: &Place| place.knots[0].clone();
+        let mut sources: BTreeMap<usize, (usize, Vec<f64>)> = BTreeMap::new();
+        let mut asked = vec![];
+        for place in places {
+            let Spot { target, source, own_path } = place.spot;
+            let next = sources.len();
+            let law = sources.entry(source?).or_insert_with(|| (next, first(place))).0;
+            asked.push(Asked { target, own_path, law, simulations: place.knots[0].len() });
         }
-        places
+        let all = asked.iter().map(|asked| asked.simulations).sum();
+        let terms = |seen: &[Vec<f64>]| {
+            let mut terms: Vec<(usize, Terms)> = sources
+                .iter()
+                .map(|(&source, (law, knots))| {
+                    let unit = |j: usize| {
+                        let values = (0..knots.len()).map(|i| f64::from(u8::from(i == j)));
+                        let values: Vec<f64> = values.collect();
+                        let shape = FreeForm { knots: knots.clone(), values: values.clone() };
+                        curve(&shape, &values, &seen[source])
+                    };
+                    (*law, Terms::new(&(0..knots.len()).map(unit).collect::<Vec<_>>()))
+                })
+                .collect();
+            terms.sort_by_key(|(law, _)| *law);
+            terms.into_iter().map(|(_, terms)| terms).collect()
+        };
+        leading((self.problem, self.nominal), &at.about(), &asked, all, terms, self.watch)
+    }
+
+    /// Curves without a value at a place; they differ in their knots.
+    fn curves(&self, builder: &mut Builder<'_, '_>, place: &Place) -> Option<Vec<Arc<Candidate>>> {
+        let (base, spot) = (&self.problem.base, place.spot);
+        let of = base.sources.entries[spot.source?].0.name.clone();
+        let twin = |&(t, by): &(usize, f64)| {
+            (base.targets.entries[t].0.name.clone(), Some(of.clone()), by)
+        };
+        let twins: Vec<_> = place.others.iter().map(twin).collect();
+        for knots in place.knots.iter() {
+            let shape = FreeForm { values: vec![0.0; knots.len()], knots: knots.clone() };
+            let card = Effect::card(&shape);
+            builder.push(NAME, &shape, &card, spot, 0.0, None, twins.clone());
+        }
+        let probe = PROBE * self.nominal.natural[spot.target];
+        let causes = builder.found.drain(..);
+        Some(causes.map(|cause| Arc::new(Candidate { probe, ..cause })).collect())
     }
 
     /// Curves without a value at the place of a law of the library, with its channels; they differ in
     /// their knots.
     pub fn in_place_of(&self, law: &Candidate) -> Vec<Candidate> {
-        let here = |curve: &Arc<Candidate>| curve.into == law.into && curve.of == law.of;
+        let base = &self.problem.base;
+        let name = |source: usize| &base.sources.entries[source].0.name;
+        let here = |place: &Place| {
+            base.targets.entries[place.spot.target].0.name == law.into
+                && place.spot.source.map(name) == law.of.as_ref()
+        };
         let rewired = |curve: Arc<Candidate>| Candidate {
             also_into: law.also_into.clone(),
             wire: law.wire.clone(),
             twins: law.twins.clone(),
             ..Candidate::clone(&curve)
         };
-        self.places().into_iter().flatten().filter(here).map(rewired).collect()
+        let mut builder = Builder::new(self.problem, self.nominal, vec![]);
+        let places = self.spots(&builder).into_iter().filter(here);
+        let curves = places.filter_map(|place| self.curves(&mut builder, &place));
+        curves.collect::<Vec<_>>().into_iter().flatten().map(rewired).collect()
     }
 
     /// One curve to first order, as smooth as what is left out asks for.

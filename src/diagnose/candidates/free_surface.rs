@@ -1,15 +1,17 @@
 //! Laws of one or two coordinates into every channel, to first order.
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::candidates::candidate::Candidate;
 use crate::candidates::free_curve::{At, Drawing, PROBE};
+use crate::candidates::leading_places::{Asked, Terms, leading};
 use crate::candidates::library::{Builder, Spot};
 use crate::candidates::products::Tensor;
 use crate::candidates::smoothing::{Smoothed, smoothed};
-use crate::effect::{Effect, View};
+use crate::effect::{Effect, View, curve};
 use crate::fit::problem::{Grain, Job, Model, Part, Span};
 use crate::plugins::effects::network::Network;
 use crate::statistics::project;
@@ -24,8 +26,6 @@ const STEEPEST: f64 = 12.0;
 /// Orders of the polynomials of one coordinate, and of their products.
 const SINGLE: [usize; 4] = [1, 2, 3, 4];
 const PRODUCTS: [[usize; 2]; 6] = [[1, 1], [2, 1], [1, 2], [2, 2], [3, 1], [1, 3]];
-/// Pairs of coordinates whose products are simulated together.
-const PAIRS_AT_ONCE: usize = 16;
 /// Pairs of coordinates per channel at most; the first ones, in the model's order.
 const PAIRS: usize = 66;
 /// What one more coordinate must predict to be worth it.
@@ -51,6 +51,18 @@ struct Moving {
     scale: f64,
 }
 
+impl Moving {
+    /// Polynomials of the coordinate along a course of it, from order 0 on.
+    fn powers(&self, z: &[f64]) -> Vec<Vec<f64>> {
+        let power = |order: usize| {
+            let (offsets, scales) = (vec![self.offset], vec![self.scale]);
+            let of = Tensor { offsets, scales, orders: vec![vec![order]], values: vec![1.0] };
+            curve(&of, &[1.0], z)
+        };
+        (0..=SINGLE.len()).map(power).collect()
+    }
+}
+
 impl Drawing<'_, '_> {
     /// The laws that predict most of what a model leaves, best first, and how many were tried.
     pub fn surfaces(&self, model: &Model, y: &[Vec<f64>]) -> (Vec<Surface>, usize) {
@@ -64,41 +76,59 @@ impl Drawing<'_, '_> {
         let groups = builder.channels();
         let moving: Vec<Moving> =
             builder.sources().into_iter().filter_map(|source| self.moving(source)).collect();
+        let pairs: Vec<(usize, usize)> = (0..moving.len())
+            .flat_map(|a| (a + 1..moving.len()).map(move |b| (a, b)))
+            .take(PAIRS)
+            .collect();
+        let targets: Vec<usize> = groups.iter().map(|group| group[0].0).collect();
+        let chosen = self.leading_laws(&at, &targets, &moving, &pairs);
+        let laws = moving.len() + pairs.len();
         let (mut surfaces, mut tried) = (vec![], 0);
-        for group in &groups {
+        for (number, group) in groups.iter().enumerate() {
             let target = group[0].0;
+            let wants = |law: usize| {
+                chosen.as_ref().is_none_or(|chosen| chosen.contains(&(number * laws + law)))
+            };
+            let open: Vec<usize> = (0..pairs.len()).filter(|i| wants(moving.len() + i)).collect();
+            let with = |i: usize| open.iter().any(|&p| pairs[p].0 == i || pairs[p].1 == i);
+            if self.watch.stopped() || open.is_empty() && !(0..moving.len()).any(wants) {
+                continue;
+            }
             let constant = self.columns(&at, target, &moving[..moving.len().min(1)], &[vec![0]]);
             let single: Vec<Vec<Vec<f64>>> = moving
                 .iter()
-                .map(|one| {
+                .enumerate()
+                .map(|(i, one)| {
+                    if !(wants(i) || with(i)) || self.watch.stopped() {
+                        return vec![];
+                    }
                     let orders: Vec<Vec<usize>> = SINGLE.iter().map(|&o| vec![o]).collect();
                     self.columns(&at, target, std::slice::from_ref(one), &orders)
                 })
                 .collect();
-            let pairs: Vec<(usize, usize)> = (0..moving.len())
-                .flat_map(|a| (a + 1..moving.len()).map(move |b| (a, b)))
-                .take(PAIRS)
-                .collect();
             let mut laws: Vec<(Vec<usize>, Vec<Vec<usize>>, Smoothed)> = vec![];
-            for (i, own) in single.iter().enumerate() {
+            for (i, own) in
+                single.iter().enumerate().filter(|(i, own)| wants(*i) && !own.is_empty())
+            {
                 let orders: Vec<Vec<usize>> =
                     std::iter::once(0).chain(SINGLE).map(|o| vec![o]).collect();
                 let columns = [&constant[..], own].concat();
                 laws.extend(self.fit(&columns, &left, &orders).map(|fit| (vec![i], orders, fit)));
             }
-            for pairs in pairs.chunks(PAIRS_AT_ONCE) {
-                for &(a, b) in pairs {
-                    let products: Vec<Vec<usize>> = PRODUCTS.iter().map(|p| p.to_vec()).collect();
-                    let both = [a, b].map(|i| Moving { ..moving[i] });
-                    let mixed = self.columns(&at, target, &both, &products);
-                    let columns = [&constant[..], &single[a], &single[b], &mixed].concat();
-                    let mut orders = vec![vec![0, 0]];
-                    orders.extend(SINGLE.map(|o| vec![o, 0]));
-                    orders.extend(SINGLE.map(|o| vec![0, o]));
-                    orders.extend(products);
-                    let fit = self.fit(&columns, &left, &orders);
-                    laws.extend(fit.map(|fit| (vec![a, b], orders, fit)));
+            for (a, b) in open.into_iter().map(|p| pairs[p]) {
+                if self.watch.stopped() {
+                    break;
                 }
+                let products: Vec<Vec<usize>> = PRODUCTS.iter().map(|p| p.to_vec()).collect();
+                let both = [a, b].map(|i| Moving { ..moving[i] });
+                let mixed = self.columns(&at, target, &both, &products);
+                let columns = [&constant[..], &single[a], &single[b], &mixed].concat();
+                let mut orders = vec![vec![0, 0]];
+                orders.extend(SINGLE.map(|o| vec![o, 0]));
+                orders.extend(SINGLE.map(|o| vec![0, o]));
+                orders.extend(products);
+                let fit = self.fit(&columns, &left, &orders);
+                laws.extend(fit.map(|fit| (vec![a, b], orders, fit)));
             }
             tried += laws.len();
             for (of, orders, fit) in laws {
@@ -109,6 +139,45 @@ impl Drawing<'_, '_> {
         let rank = |s: &Surface| s.share - if s.sources.len() > 1 { SECOND } else { 0.0 };
         surfaces.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
         (surfaces, tried)
+    }
+
+    /// The laws that are simulated, channel by channel those of one coordinate and of two, where simulating
+    /// all of them is too much work.
+    fn leading_laws(
+        &self,
+        at: &At<'_>,
+        targets: &[usize],
+        moving: &[Moving],
+        pairs: &[(usize, usize)],
+    ) -> Option<BTreeSet<usize>> {
+        let base = &self.problem.base;
+        let (of_one, of_two) = (SINGLE.len() + 1, 2 * SINGLE.len() + PRODUCTS.len() + 1);
+        let mut asked = vec![];
+        for &target in targets {
+            let origin = base.targets.entries[target].1;
+            for law in 0..moving.len() + pairs.len() {
+                let own = moving.get(law).map(|one| base.sources.entries[one.source].1);
+                let own_path = matches!(own, Some(Origin::Input(_))) && own == Some(origin);
+                let simulations = if law < moving.len() { of_one } else { of_two };
+                asked.push(Asked { target, own_path, law, simulations });
+            }
+        }
+        let each = moving.len() * SINGLE.len() + pairs.len() * PRODUCTS.len() + 1;
+        let terms = |seen: &[Vec<f64>]| {
+            let powers: Vec<Vec<Vec<f64>>> =
+                moving.iter().map(|one| one.powers(&seen[one.source])).collect();
+            let of_one = powers.iter().map(|own| Terms::new(own));
+            let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect();
+            let of_two = pairs.iter().map(|&(a, b)| {
+                let mut terms = powers[a].clone();
+                terms.extend_from_slice(&powers[b][1..]);
+                terms.extend(PRODUCTS.map(|[i, j]| product(&powers[a][i], &powers[b][j])));
+                Terms::new(&terms)
+            });
+            of_one.chain(of_two).collect()
+        };
+        let all = targets.len() * each;
+        leading((self.problem, self.nominal), &at.about(), &asked, all, terms, self.watch)
     }
 
     /// The range of a coordinate, if it has one.

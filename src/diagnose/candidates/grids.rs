@@ -10,7 +10,7 @@ use crate::effect::{CandidateEffect, EffectCard, Role, View, curve};
 /// Starting values that share which bounds are absent and which variants are chosen.
 #[derive(Debug, Clone)]
 pub(crate) struct Pattern {
-    pub starts: Vec<Vec<f64>>,
+    pub starts: Arc<Vec<Vec<f64>>>,
     /// Parameters that the effect is proportional to, and those of its shape that are free.
     pub linear: Vec<usize>,
     pub refine: Vec<usize>,
@@ -71,7 +71,7 @@ impl Grid {
             let refine: Vec<usize> =
                 parameters.filter(|i| role(i) == Role::Shape && free(i) && finite(i)).collect();
             let size = shape_size(shape, card, (&starts[0], &linear), (series, view));
-            Pattern { starts, linear, refine, size }
+            Pattern { starts: Arc::new(starts), linear, refine, size }
         };
         let patterns = patterns.into_iter().map(of).collect();
         Self { patterns, min: search.min, max: search.max, thresholds: search.thresholds }

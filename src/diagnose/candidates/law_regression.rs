@@ -48,9 +48,9 @@ mod tests {
         let w: Vec<f64> = z.iter().map(|z| -0.04 * z).collect();
         let shape = effect("dead_zone");
         let free = Candidate {
-            card: shape.card(),
+            card: shape.card().into(),
             shape,
-            starts: vec![vec![1.0, 10.0]],
+            starts: vec![vec![1.0, 10.0]].into(),
             min: vec![f64::NEG_INFINITY, 1.0],
             max: vec![f64::INFINITY, 60.0],
             linear: vec![0],
@@ -69,9 +69,9 @@ mod tests {
         let w: Vec<f64> = z.iter().map(|z| z.clamp(-5.0, 5.0) - z).collect();
         let shape = effect("saturation");
         let limits = Candidate {
-            card: shape.card(),
+            card: shape.card().into(),
             shape,
-            starts: vec![vec![-9.0, 9.0], vec![-5.0, 5.0]],
+            starts: vec![vec![-9.0, 9.0], vec![-5.0, 5.0]].into(),
             min: vec![-20.0, 0.0],
             max: vec![0.0, 20.0],
             linear: vec![],
@@ -89,7 +89,7 @@ mod tests {
         let law = candidate("a");
         assert!(!hills(&law, &z, &w).is_empty());
         let shape = effect("extra_mode");
-        let own = Candidate { card: shape.card(), shape, ..law };
+        let own = Candidate { card: shape.card().into(), shape, ..law };
         assert!(hills(&own, &z, &w).is_empty());
     }
 }

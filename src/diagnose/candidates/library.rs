@@ -11,6 +11,7 @@ use crate::fit::problem::{Model, Problem};
 use crate::prepare::operating_range::Nominal;
 use crate::register;
 use crate::system::{Origin, Route};
+use crate::watch::Watch;
 
 /// Which effects and parameters may be causes.
 #[derive(Debug, Clone, Default)]
@@ -45,19 +46,24 @@ pub(crate) struct Builder<'a, 'b> {
     pub(crate) nominal: &'a Nominal,
     pub(crate) lines: Vec<f64>,
     pub(crate) found: Vec<Candidate>,
+    /// The card that was used last.
+    card: Option<Arc<EffectCard>>,
     /// Grids that were made, where an effect always has the same.
     pub(crate) grids: Option<Grids>,
-    /// How stiff steep laws are, by target and source.
+    /// How fast targets change sources, and how stiff steep laws are there.
+    pushes: BTreeMap<(usize, usize), Option<f64>>,
     stiffnesses: BTreeMap<(usize, usize), Stiffness>,
 }
 
-/// All candidates for a model, given its residual lines (rad/s).
+/// All candidates for a model, given its residual lines (rad/s); those that are made where somebody asks
+/// to stop.
 pub(crate) fn library(
     problem: &Problem<'_>,
     nominal: &Nominal,
     model: &Model,
     lines: Vec<f64>,
     allowed: &Allowed,
+    watch: &dyn Watch,
 ) -> Vec<Arc<Candidate>> {
     let mut builder = Builder::new(problem, nominal, lines);
     builder.grids = Some(Grids::default());
@@ -70,19 +76,16 @@ pub(crate) fn library(
         !parameter.fixed && !allowed.fixed.contains(&parameter.name)
     };
     for (name, shape) in registered.chain(written) {
-        if !allowed.effect(name) {
+        if !allowed.effect(name) || shape.card().mechanism == Mechanism::Data {
             continue;
         }
         let declared = shape.card();
-        if declared.mechanism == Mechanism::Data {
-            continue;
-        }
         if declared.places.parameter {
             builder.parameters(name, shape.as_ref(), &declared, model, &is_free);
         }
         builder.paths(name, shape.as_ref(), &declared);
         if declared.places.channel {
-            for group in &groups {
+            for group in groups.iter().take_while(|_| !watch.stopped()) {
                 builder.channel_paths(name, shape.as_ref(), &declared, group, &sources);
             }
         }
@@ -95,8 +98,9 @@ pub(crate) fn library(
 
 impl<'a, 'b> Builder<'a, 'b> {
     pub(crate) fn new(problem: &'a Problem<'b>, nominal: &'a Nominal, lines: Vec<f64>) -> Self {
-        let stiffnesses = BTreeMap::new();
-        Self { problem, nominal, lines, found: vec![], grids: None, stiffnesses }
+        let (pushes, stiffnesses) = (BTreeMap::new(), BTreeMap::new());
+        let (found, card, grids) = (vec![], None, None);
+        Self { problem, nominal, lines, found, card, grids, pushes, stiffnesses }
     }
 }
 
@@ -176,6 +180,7 @@ impl Builder<'_, '_> {
             SignRule::Along => 0.0,
             SignRule::Positive => 1.0,
         };
+        let card = self.shared(card);
         let (target_signal, target_origin) = &base.targets.entries[spot.target];
         let source_signal = &base.sources.entries[source].0;
         let simple = card.properties.of_an_instrument;
@@ -228,12 +233,24 @@ impl Builder<'_, '_> {
         }
     }
 
+    /// A card that many candidates have.
+    pub(crate) fn shared(&mut self, card: &EffectCard) -> Arc<EffectCard> {
+        let known = self.card.take().filter(|known| **known == *card);
+        self.card.insert(known.unwrap_or_else(|| Arc::new(card.clone()))).clone()
+    }
+
+    /// The rate at which a target changes a source, see [`Nominal::push`].
+    pub(crate) fn push_of(&mut self, target: usize, source: usize) -> Option<f64> {
+        let nominal = self.nominal;
+        *self.pushes.entry((target, source)).or_insert_with(|| nominal.push(target, source))
+    }
+
     /// How stiff steep laws of a source are in a channel that changes it at this rate.
     fn stiffness(&mut self, target: usize, source: usize, push: f64) -> Stiffness {
-        let (problem, nominal) = (self.problem, self.nominal);
+        let pushes = self.nominal.pushes.clone();
         let new = || {
-            let at = |theta: &[f64]| nominal.push_at(problem, target, source, theta);
-            Stiffness::new(push, nominal.theta(), at)
+            let theta = pushes.theta.clone();
+            Stiffness::new(push, theta, move |theta| pushes.push_at(target, source, theta))
         };
         self.stiffnesses.entry((target, source)).or_insert_with(new).clone()
     }

@@ -6,6 +6,7 @@ pub(crate) mod free_curve;
 pub(crate) mod free_surface;
 pub(crate) mod grids;
 pub(crate) mod law_regression;
+pub(crate) mod leading_places;
 pub(crate) mod library;
 pub(crate) mod naming;
 pub(crate) mod network_start;

@@ -16,15 +16,13 @@ impl Builder<'_, '_> {
         model: &Model,
         wanted: &dyn Fn(usize) -> bool,
     ) {
+        let mut card = card.clone();
+        card.parameters[0].value = 0.0;
+        let card = self.shared(&card);
         let signals = &self.problem.base.signals;
         let duration = self.problem.len() as f64 * self.problem.base.sampling_time;
-        for (p, parameter) in signals.parameters.iter().enumerate() {
-            if !wanted(p) {
-                continue;
-            }
+        for (p, parameter) in signals.parameters.iter().enumerate().filter(|(p, _)| wanted(*p)) {
             let value = model.theta[p];
-            let mut card = card.clone();
-            card.parameters[0].value = 0.0;
             let changes = card.mechanism == Mechanism::Parameter;
             // a change of the value, kept inside the parameter's own bounds and of its sign
             let floor = if value > 0.0 { parameter.min.max(0.05 * value) } else { parameter.min };
@@ -48,7 +46,7 @@ impl Builder<'_, '_> {
                 place: Preference::Parameter,
                 linear: vec![0],
                 refine: vec![],
-                starts: vec![vec![0.0]],
+                starts: vec![vec![0.0]].into(),
                 min: vec![range.0],
                 max: vec![range.1],
                 thresholds: false,
@@ -59,7 +57,7 @@ impl Builder<'_, '_> {
                 named: Named::default(),
                 units: (parameter.unit.clone(), "s".into()),
                 twins: vec![],
-                card,
+                card: card.clone(),
             });
         }
     }
@@ -147,7 +145,6 @@ impl Builder<'_, '_> {
             }
             let spot = Spot { target, source: Some(source), own_path: false };
             let signal = &base.sources.entries[source].0;
-            let sign_of = |entry: usize| self.nominal.push(self.problem, target, entry);
             let (push, rate) = match card.needs {
                 Needs::Velocity => {
                     let velocity = match &signal.quantity {
@@ -157,7 +154,7 @@ impl Builder<'_, '_> {
                     let known_position = base.rates.rate(source).is_some();
                     let series = self.nominal.series(source);
                     let both = series.iter().any(|v| *v < 0.0) && series.iter().any(|v| *v > 0.0);
-                    let Some(d) = sign_of(source) else { continue };
+                    let Some(d) = self.push_of(target, source) else { continue };
                     if !velocity
                         || !both
                         || d == 0.0
@@ -177,7 +174,9 @@ impl Builder<'_, '_> {
                 }
                 Needs::CoordinateWithRate => {
                     let Some(rate) = base.rates.rate(source) else { continue };
-                    let Some(d) = sign_of(rate.0).filter(|d| *d != 0.0) else { continue };
+                    let Some(d) = self.push_of(target, rate.0).filter(|d| *d != 0.0) else {
+                        continue;
+                    };
                     (d * rate.1, Some(rate))
                 }
                 Needs::Motion => {
@@ -189,7 +188,9 @@ impl Builder<'_, '_> {
                     let rate =
                         if is_velocity { Some((source, 1.0)) } else { base.rates.rate(source) };
                     let Some(rate) = rate.filter(|_| !(is_velocity && position)) else { continue };
-                    let Some(d) = sign_of(rate.0).filter(|d| *d != 0.0) else { continue };
+                    let Some(d) = self.push_of(target, rate.0).filter(|d| *d != 0.0) else {
+                        continue;
+                    };
                     (d * rate.1, Some(rate))
                 }
                 Needs::AngleOrTime => {
@@ -210,7 +211,7 @@ impl Builder<'_, '_> {
             // a law of either sign that has words for both needs to know which is which
             let named = Named { quantity: self.quantity(source), ..Named::default() };
             if push == 0.0 && shape.senses(&named).is_some() {
-                let push = sign_of(source).unwrap_or(0.0);
+                let push = self.push_of(target, source).unwrap_or(0.0);
                 self.found[first..].iter_mut().for_each(|cause| cause.push = push);
             }
             self.passed_on(name, shape, card, target, source);
@@ -254,7 +255,7 @@ impl Builder<'_, '_> {
         {
             return;
         }
-        let fills = |t: usize| self.nominal.push(self.problem, t, source).is_some_and(|d| d != 0.0);
+        let mut fills = |t: usize| self.push_of(t, source).is_some_and(|d| d != 0.0);
         if !fills(target) {
             return;
         }

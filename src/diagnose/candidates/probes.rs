@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::fit::problem::{Grain, Job, Model, Part, Problem, Span};
 use crate::statistics::rms;
+use crate::watch::Watch;
 
 /// Attempts to hit a target size.
 const ATTEMPTS: usize = 6;
@@ -50,6 +51,8 @@ pub(crate) struct Sharing<'a, 'b> {
     /// First candidate of each kind, whose plan the others use.
     pub(crate) kinds: Vec<(String, Arc<Candidate>)>,
     pub(crate) grain: Grain,
+    /// Says whether somebody asks to stop: what was not simulated then is no hit.
+    pub(crate) watch: &'a dyn Watch,
 }
 
 impl Sharing<'_, '_> {
@@ -110,11 +113,13 @@ pub(crate) fn steer(
     (share, target): (f64, f64),
     tangent: bool,
 ) -> Vec<(Probe, Vec<f64>)> {
+    let watch = sharing.watch;
     let mut hits = vec![];
     for attempt in 0..ATTEMPTS {
         let open: Vec<usize> =
             (0..probes.len()).filter(|&i| !probes[i].done && !probes[i].failed).collect();
-        for chunk in open.chunks(CHUNK.min(problem.at_once(Span::Fit))) {
+        let chunks = open.chunks(CHUNK.min(problem.at_once(Span::Fit)));
+        for chunk in chunks.take_while(|_| !watch.stopped()) {
             let mut jobs = vec![];
             let mut of = vec![];
             for &i in chunk {

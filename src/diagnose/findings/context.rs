@@ -6,6 +6,7 @@ use crate::prepare::joined_records::Joined;
 use crate::prepare::operating_range::Nominal;
 use crate::system::System;
 use crate::validate::test_error::TestData;
+use crate::watch::Watch;
 
 /// What is reported from.
 pub(crate) struct Context<'a, 'b> {
@@ -24,4 +25,6 @@ pub(crate) struct Source<'a> {
     pub firsts: &'a [usize],
     /// Parameters that the call holds.
     pub fixed: &'a [String],
+    /// Says whether somebody asks to stop.
+    pub watch: &'a dyn Watch,
 }

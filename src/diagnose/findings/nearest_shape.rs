@@ -13,6 +13,7 @@ use crate::findings::series::Curve;
 use crate::fit::finished::Finished;
 use crate::fit::problem::{Grain, Model};
 use crate::register;
+use crate::watch::Watch;
 
 /// Values of the coordinate at which curves are compared, in equal shares of its use.
 const POINTS: usize = 81;
@@ -45,11 +46,11 @@ impl Context<'_, '_> {
 
     /// The curve that comes nearest to what is left, where none was good enough to be a cause,
     /// and how near it comes.
-    pub fn suspicion(&self, chosen: &Finished) -> Option<(Curve, Note)> {
+    pub fn suspicion(&self, chosen: &Finished, watch: &dyn Watch) -> Option<(Curve, Note)> {
         let model = &chosen.fitted.model;
         let y = self.problem.simulate(model, Grain::Coarse)?;
         let (problem, nominal, nuisance) = (self.problem, self.nominal, &chosen.nuisance);
-        let nearest = Drawing { problem, nominal, nuisance }.sketches(model, &y);
+        let nearest = Drawing { problem, nominal, nuisance, watch }.sketches(model, &y);
         let Sketch { cause, values, errors, share } = nearest.into_iter().next()?;
         if !(share > 0.0) {
             return None;

@@ -53,6 +53,14 @@ pub enum Note {
         /// Laws there are.
         of: usize,
     },
+    /// Smoothing the missing force of every channel was too much work: those were asked that the records
+    /// call for most.
+    ForcesLeftOut {
+        /// Channels that were asked.
+        channels: usize,
+        /// Channels there are.
+        of: usize,
+    },
     /// What the simulation leaves of an output is no more than its own error, of the integrator and
     /// of rounding.
     Unresolved {

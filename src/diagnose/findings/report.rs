@@ -84,7 +84,7 @@ impl Context<'_, '_> {
         notes.extend(held);
         notes.extend(made_up_for(chosen.track, &causes, gain.error_removed));
         let unknown = verdict == Verdict::Unexplained && causes.is_empty();
-        let nearest = unknown.then(|| self.suspicion(chosen)).flatten();
+        let nearest = unknown.then(|| self.suspicion(chosen, from.watch)).flatten();
         let (curve, note) = nearest.unzip();
         series.curves.extend(curve);
         notes.extend(note);

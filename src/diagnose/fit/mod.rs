@@ -1,9 +1,12 @@
 //! Fits of models to records: residuals, step sizes, nuisance, least squares, covariances.
 
+pub(crate) mod adjoint;
+pub(crate) mod affordable;
 pub(crate) mod allowing;
 pub(crate) mod block_jacobian;
 pub(crate) mod collinear;
 pub(crate) mod covariance;
+pub(crate) mod explained;
 pub(crate) mod finished;
 pub(crate) mod fitted;
 pub(crate) mod found;
@@ -19,3 +22,4 @@ pub(crate) mod segment_restart;
 pub(crate) mod simulation_cache;
 pub(crate) mod step_size;
 pub(crate) mod supposed;
+pub(crate) mod work;

@@ -9,16 +9,21 @@ use rayon::prelude::*;
 use crate::candidates::candidate::Wire;
 use crate::fit::simulation_cache::Remembered;
 pub(crate) use crate::fit::supposed::{Added, Grain, Model, Simulated};
+use crate::fit::work::Work;
 use crate::memory::Memory;
 use crate::system::{Base, Drive, Lane, Placed, Plan, System, SystemError};
 
 /// Lanes that are one block of numbers.
 const PACK: usize = 8;
-/// Blocks that are simulated side by side in one piece of work, at most.
+/// Blocks that are simulated side by side in one piece of work, at most, and bytes of parameters that they
+/// may have: every sample goes through all of them, so that they should stay in a cache of the processor.
 const PACKS_AT_ONCE: usize = 8;
+const CACHE: usize = 256 << 10;
 
-/// Share of the memory that simulations side by side may take.
+/// Share of the memory that simulations side by side may take, and bytes beyond which more of them are no
+/// faster, where every thread has a block.
 const AT_ONCE: u64 = 12;
+const ENOUGH: usize = 128 << 20;
 
 /// One simulation that is wanted.
 #[derive(Debug, Clone)]
@@ -84,8 +89,12 @@ pub(crate) struct Problem<'a> {
     pub(crate) plans: Mutex<HashMap<(Grain, Vec<String>), Arc<Plan>>>,
     /// Simulations that may be asked for again.
     pub(crate) remembered: Remembered,
-    /// What it may take.
+    /// What it may take, and how much work is done.
     pub(crate) memory: Memory,
+    pub(crate) work: Work,
+    /// Simulations that were asked for.
+    #[cfg(test)]
+    pub(crate) simulations: std::sync::atomic::AtomicUsize,
 }
 
 impl<'a> Problem<'a> {
@@ -150,6 +159,9 @@ impl<'a> Problem<'a> {
             plans: Mutex::new(HashMap::new()),
             remembered: Remembered::default(),
             memory: Memory::default(),
+            work: Work::default(),
+            #[cfg(test)]
+            simulations: std::sync::atomic::AtomicUsize::new(0),
             system,
             base,
             drive,
@@ -174,8 +186,9 @@ impl<'a> Problem<'a> {
     /// Simulations whose outputs memory holds side by side.
     pub fn at_once(&self, span: Span) -> usize {
         let samples = if span == Span::Fit { self.fit_drive.len() } else { self.len() };
-        let room = self.memory.part(AT_ONCE) / (8 * samples * self.y.len()).max(1);
-        room.max(PACK)
+        let each = (8 * samples * self.y.len()).max(1);
+        let enough = (ENOUGH / each).max(PACK * rayon::current_num_threads());
+        (self.memory.part(AT_ONCE) / each).min(enough).max(PACK)
     }
 
     /// Integration step of a grain, in s.
@@ -255,6 +268,8 @@ impl<'a> Problem<'a> {
 
     /// Runs many simulations, side by side and on all threads.
     pub fn run(&self, jobs: &[Job], span: Span) -> Vec<Simulated> {
+        #[cfg(test)]
+        self.simulations.fetch_add(jobs.len(), std::sync::atomic::Ordering::Relaxed);
         let drive = if span == Span::Fit { &self.fit_drive } else { &self.drive };
         // lanes of the same plan stand together
         let mut order: Vec<usize> = (0..jobs.len()).collect();
@@ -274,7 +289,9 @@ impl<'a> Problem<'a> {
             }
         }
         let threads = rayon::current_num_threads();
-        let rounds = packs.len().div_ceil(threads * PACKS_AT_ONCE).max(1);
+        let parameters = 8 * PACK * self.base.signals.parameters.len();
+        let most = (CACHE / parameters.max(1)).clamp(1, PACKS_AT_ONCE);
+        let rounds = packs.len().div_ceil(threads * most).max(1);
         let share = packs.len().div_ceil(threads * rounds).max(1);
         let pieces: Vec<Vec<usize>> = packs.chunks(share).map(<[_]>::concat).collect();
         let done: Vec<Vec<(usize, Simulated)>> =

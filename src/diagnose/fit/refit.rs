@@ -30,7 +30,7 @@ pub(crate) fn refit(
     models: &[Model],
     how: Refit,
 ) -> Vec<Option<Fitted>> {
-    let mut fitted = once(problem, nuisance, models, how, &|_, r| r);
+    let mut fitted = once(problem, nuisance, models, how, &|_, r| r, &|| false);
     if nuisance.segments < MANY {
         return fitted;
     }
@@ -42,7 +42,9 @@ pub(crate) fn refit(
         let moved = of.into_iter().zip(moved).filter_map(|(m, moved)| Some((m, moved?)));
         let (of, moved): (Vec<usize>, Vec<Model>) = moved.unzip();
         open.clear();
-        for (m, again) in of.into_iter().zip(once(problem, nuisance, &moved, how, &|_, r| r)) {
+        for (m, again) in
+            of.into_iter().zip(once(problem, nuisance, &moved, how, &|_, r| r, &|| false))
+        {
             let (Some(again), Some(before)) = (again, &fitted[m]) else { continue };
             let (sum, least) = (again.squares(), before.squares());
             if sum < WORTH * least {
@@ -60,15 +62,16 @@ pub(crate) fn refit(
 }
 
 /// Fits many models at once, each to the minimum that is next, in the metric of its own disturbance:
-/// residuals and columns of the fits are whitened.
+/// residuals and columns of the fits are whitened. None of them where somebody asks to stop.
 pub(crate) fn refit_whitened(
     problem: &Problem<'_>,
     nuisance: &Nuisance,
     models: &[Model],
     whiteners: &[Arc<dyn Whitener>],
     how: Refit,
+    stop: &dyn Fn() -> bool,
 ) -> Vec<Option<Fitted>> {
-    once(problem, nuisance, models, how, &|m, r| whiteners[m].whiten(&r))
+    once(problem, nuisance, models, how, &|m, r| whiteners[m].whiten(&r), stop)
 }
 
 /// One fit of each, to the minimum that is next, of filtered residuals.
@@ -78,6 +81,7 @@ fn once(
     models: &[Model],
     how: Refit,
     filter: &(dyn Fn(usize, Vec<f64>) -> Vec<f64> + Sync),
+    stop: &dyn Fn() -> bool,
 ) -> Vec<Option<Fitted>> {
     let (part, span) = (how.part(), how.span());
     let residuals = problem.samples(part).count() * problem.y.len();
@@ -103,6 +107,9 @@ fn once(
         model
     };
     loop {
+        if stop() {
+            return vec![None; models.len()];
+        }
         let mut jobs = vec![];
         let mut counts = vec![];
         for ((keys, run), model) in runs.iter_mut().zip(models) {

@@ -36,7 +36,7 @@ pub(super) fn finished(
     (of, found): (&Predictor, &Explanation),
 ) -> Option<Finished> {
     let problem = &prepared.problem;
-    let known = library(problem, &prepared.nominal, &prepared.start, vec![], allowed);
+    let known = library(problem, &prepared.nominal, &prepared.start, vec![], allowed, &());
     let theta = &prepared.start.theta;
     let (mut laws, mut slots) = (vec![], vec![]);
     for cause in &found.causes {

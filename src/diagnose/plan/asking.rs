@@ -38,7 +38,8 @@ impl Planning<'_, '_> {
                 failed: false,
             })
             .collect();
-        let mut sharing = Sharing { problem, model: start, kinds: vec![], grain: Grain::Coarse };
+        let (kinds, grain) = (vec![], Grain::Coarse);
+        let mut sharing = Sharing { problem, model: start, kinds, grain, watch: &() };
         let gentle = (1e-6, GENTLE * spread);
         // the sizes that probes end with are those that hit
         steer(problem, &mut sharing, causes, &mut probes, &r0, gentle, false);

@@ -111,7 +111,8 @@ fn unit(change: impl Iterator<Item = f64>, size: f64) -> Option<Vec<f64>> {
 }
 
 fn jobs(problem: &Problem<'_>, start: &Model, asked: &[Asked]) -> Vec<Option<Job>> {
-    let mut sharing = Sharing { problem, model: start, kinds: vec![], grain: Grain::Coarse };
+    let (kinds, grain) = (vec![], Grain::Coarse);
+    let mut sharing = Sharing { problem, model: start, kinds, grain, watch: &() };
     let job = |asked: &Asked| {
         asked.size?;
         sharing.job(&asked.cause, &asked.parameters, asked.blend)

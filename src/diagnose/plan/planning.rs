@@ -30,7 +30,7 @@ impl Planning<'_, '_> {
     pub fn look(&self, allowed: &Allowed) -> Option<Outlook> {
         let Prepared { problem, start, nominal, .. } = self.prepared;
         let mut causes: Vec<Arc<Candidate>> = vec![];
-        for cause in library(problem, nominal, start, vec![], allowed) {
+        for cause in library(problem, nominal, start, vec![], allowed, self.watch) {
             // a curve of any shape is alike to every shape
             if !cause.is_drawn() && !causes.iter().any(|c| c.same_cause(&cause)) {
                 causes.push(cause);

@@ -8,6 +8,7 @@ use crate::data::Record;
 use crate::data_faults::{Fault, FaultKind, Stretch, stretches};
 use crate::fit::problem::{Model, Problem};
 use crate::prepare::operating_range::Nominal;
+use crate::watch::Watch;
 
 /// Samples at a limit, at least, to call it one.
 const COUNT: usize = 8;
@@ -97,7 +98,7 @@ fn known_limits(
     let mut cause = Candidate::clone(found);
     // read off the record, so there is nothing to refine
     cause.refine = vec![];
-    cause.starts = vec![vec![low, high]];
+    cause.starts = Arc::new(vec![vec![low, high]]);
     Some((Arc::new(cause), vec![low, high]))
 }
 
@@ -108,6 +109,7 @@ pub(crate) fn limited(
     allowed: &Allowed,
     most: usize,
     start: Model,
+    watch: &dyn Watch,
 ) -> Model {
     let mut model = start;
     for (o, signal) in problem.base.signals.outputs.iter().enumerate().filter(|_| most > 0) {
@@ -115,7 +117,7 @@ pub(crate) fn limited(
         if !(at.0.is_finite() || at.1.is_finite()) {
             continue;
         }
-        let candidates = library(problem, nominal, &model, vec![], allowed);
+        let candidates = library(problem, nominal, &model, vec![], allowed, watch);
         if let Some((cause, parameters)) = known_limits(&candidates, &signal.name, at) {
             model = model.with(&cause, parameters);
         }

@@ -8,5 +8,6 @@ pub(crate) mod known_clipping;
 pub(crate) mod operating_range;
 pub(crate) mod outliers;
 pub(crate) mod prepared;
+pub(crate) mod pushes;
 pub(crate) mod regressors;
 pub(crate) mod windows;

@@ -1,11 +1,12 @@
 //! The baseline along the record: what every coordinate does, which way channels push.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use crate::effect::View;
 use crate::fit::problem::{Grain, Model, Part, Problem};
 use crate::model::probe::{Along, Point, slope};
 use crate::model::{Ask, Sizes};
+use crate::prepare::pushes::Pushes;
 use crate::prepare::regressors::Features;
 use crate::statistics::{deviation, median, rms};
 use crate::system::{Origin, Track};
@@ -30,8 +31,8 @@ pub(crate) struct Nominal {
     pub natural: Vec<f64>,
     /// Change of the derivatives (rows) by each own channel and input, at several samples.
     columns: Vec<Vec<f64>>,
-    /// Points of those samples.
-    points: Vec<Point>,
+    /// The same of other parameter values.
+    pub pushes: Arc<Pushes>,
     sizes: Sizes,
     /// Samples looked at.
     count: usize,
@@ -68,8 +69,8 @@ impl Nominal {
             })
             .collect();
         let targets = 0..base.targets.entries.len();
-        let columns: Vec<Vec<f64>> =
-            targets.map(|target| columns(problem, target, &points)).collect();
+        let pushes = Pushes::new(problem.system.model.as_ref(), base.clone(), points);
+        let columns: Vec<Vec<f64>> = targets.map(|target| pushes.columns(target)).collect();
         let dt = base.sampling_time;
         let moves: Vec<f64> = states.iter().map(|s| rms(&gradient(s, dt)).max(1e-300)).collect();
         let mut natural = vec![];
@@ -94,7 +95,7 @@ impl Nominal {
             seen: track.seen,
             natural,
             columns,
-            points,
+            pushes: Arc::new(pushes),
             sizes: n,
             count: known,
             sampling_time: dt,
@@ -123,26 +124,8 @@ impl Nominal {
 
     /// D: the rate at which one unit into target `target` changes source `source`, per s;
     /// 0 where there is no immediate way, `None` where it changes sign.
-    pub fn push(&self, problem: &Problem<'_>, target: usize, source: usize) -> Option<f64> {
-        push(problem, source, &self.points, &self.columns[target])
-    }
-
-    /// The same of a model of these parameter values, along the same record.
-    pub fn push_at(
-        &self,
-        problem: &Problem<'_>,
-        target: usize,
-        source: usize,
-        theta: &[f64],
-    ) -> Option<f64> {
-        let moved = |point: &Point| Point { theta: theta.to_vec(), ..point.clone() };
-        let points: Vec<Point> = self.points.iter().map(moved).collect();
-        push(problem, source, &points, &columns(problem, target, &points))
-    }
-
-    /// Parameter values of the baseline.
-    pub fn theta(&self) -> &[f64] {
-        self.points.first().map_or(&[], |point| &point.theta)
+    pub fn push(&self, target: usize, source: usize) -> Option<f64> {
+        self.pushes.push(source, &self.columns[target])
     }
 
     /// Whether an input reaches an output without a state in between.
@@ -150,6 +133,7 @@ impl Nominal {
         let law = problem.system.model.as_ref();
         let along = crate::model::probe::unit(self.sizes.u, input);
         let mut slopes = self
+            .pushes
             .points
             .iter()
             .flat_map(|point| slope(law, self.sizes, Ask::Output, point, Along::Input(&along)));
@@ -171,44 +155,6 @@ impl Nominal {
     pub fn series(&self, source: usize) -> &[f64] {
         &self.seen[source][..self.count]
     }
-}
-
-/// Change of the derivatives by one unit into a target, point after point.
-fn columns(problem: &Problem<'_>, target: usize, points: &[Point]) -> Vec<f64> {
-    let (law, base) = (problem.system.model.as_ref(), &problem.base);
-    let n = base.sizes;
-    let unit = crate::model::probe::unit;
-    let column = |point: &Point| match base.targets.entries[target].1 {
-        Origin::Own(i) if base.declared_channels => {
-            slope(law, n, Ask::Derivative, point, Along::Channel(&unit(n.w, i)))
-        }
-        Origin::Own(i) => unit(n.x, i),
-        Origin::Input(i) => slope(law, n, Ask::Derivative, point, Along::Input(&unit(n.u, i))),
-        _ => vec![0.0; n.x],
-    };
-    points.iter().flat_map(column).collect()
-}
-
-/// The typical rate at which a source changes along changes of the derivatives, see [`Nominal::push`].
-fn push(problem: &Problem<'_>, source: usize, points: &[Point], columns: &[f64]) -> Option<f64> {
-    let (law, base) = (problem.system.model.as_ref(), &problem.base);
-    let n = base.sizes;
-    let value = |(p, point): (usize, &Point)| {
-        let column = &columns[p * n.x..][..n.x];
-        match base.sources.entries[source].1 {
-            Origin::State(i) => column[i],
-            Origin::Own(i) if !base.declared_coordinates => column[i],
-            Origin::Own(i) => slope(law, n, Ask::Coordinates, point, Along::State(column))[i],
-            Origin::Output(o) => slope(law, n, Ask::Output, point, Along::State(column))[o],
-            _ => 0.0,
-        }
-    };
-    let values: Vec<f64> = points.iter().enumerate().map(value).collect();
-    let typical = median(&values);
-    if typical == 0.0 || !typical.is_finite() {
-        return Some(0.0);
-    }
-    values.iter().all(|v| v * typical >= 0.0).then_some(typical)
 }
 
 /// The size of w that moves the state it pushes most as hard as it moves anyway.

@@ -78,7 +78,7 @@ pub(super) fn dictionary(
     let present = rough.unwrap_or_else(|| residual.to_vec());
     let size = rms(residual);
     let gentle = (GENTLE.0 * spread).min(GENTLE.1 * size);
-    let mut sharing = Sharing { problem, model, kinds: vec![], grain };
+    let mut sharing = Sharing { problem, model, kinds: vec![], grain, watch };
     let mut probes = vec![];
     for (candidate, cause) in candidates.iter().enumerate() {
         for start in 0..cause.starts.len() {
@@ -94,10 +94,19 @@ pub(super) fn dictionary(
     }
     let (room, column) = (room(problem), 8 * residual.len());
     let of = wanted_laws(&probes);
-    let looked_at = ranked((problem, nominal), about, candidates, &probes, room, watch);
-    if let Some(leading) = &looked_at {
-        probes.retain(|probe| leading.contains(&(probe.candidate, probe.start)));
-    }
+    let looked_at = ranked((problem, nominal), about, candidates, &probes, watch).map(|ranked| {
+        // what a unit does is known: probes begin in the size that is wanted
+        let wanted = gentle * (residual.len() as f64).sqrt();
+        for (probe, squares) in probes.iter_mut().zip(&ranked.squares) {
+            let size = (wanted / squares.sqrt()).copysign(probe.size);
+            let most = limit(&candidates[probe.candidate], probe.which, size);
+            if size.is_finite() && size != 0.0 {
+                probe.size = size.clamp(-most, most);
+            }
+        }
+        probes.retain(|probe| ranked.leading.contains(&(probe.candidate, probe.start)));
+        ranked.leading
+    });
     let unseen = of - wanted_laws(&probes);
     let all = probes.len();
     let at_once = match all * column > room {

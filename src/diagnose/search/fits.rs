@@ -33,6 +33,8 @@ pub(super) struct Judge<'a, 'b> {
     pub free: bool,
     pub disturbance: &'a dyn NoiseModel,
     pub choices: Choices,
+    /// Whether somebody asks to stop: what is not fitted then is left out.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
 impl Judge<'_, '_> {
@@ -52,7 +54,7 @@ impl Judge<'_, '_> {
     fn fit_at_once(&self, wishes: &[Wish], how: Refit) -> Vec<Fit> {
         let models: Vec<Model> = wishes.iter().map(|wish| wish.model.clone()).collect();
         let noises: Vec<_> = wishes.iter().map(|wish| wish.noise.clone()).collect();
-        let fitted = refit_whitened(self.problem, self.nuisance, &models, &noises, how);
+        let fitted = refit_whitened(self.problem, self.nuisance, &models, &noises, how, self.stop);
         let both: Vec<_> = fitted.into_iter().zip(&noises).collect();
         both.into_par_iter().filter_map(|(fitted, by)| self.judged(fitted?, by.as_ref())).collect()
     }

@@ -20,7 +20,7 @@ pub(crate) fn candidate(into: &str) -> Candidate {
     Candidate {
         effect: "cubic",
         shape: shape.boxed(),
-        card,
+        card: card.into(),
         into: into.into(),
         of: Some("position".into()),
         also_into: vec![],
@@ -30,7 +30,7 @@ pub(crate) fn candidate(into: &str) -> Candidate {
         place: Preference::DeclaredChannel,
         linear: vec![0],
         refine: vec![],
-        starts: vec![vec![0.0; count]],
+        starts: vec![vec![0.0; count]].into(),
         min: vec![f64::NEG_INFINITY; count],
         max: vec![f64::INFINITY; count],
         thresholds: false,

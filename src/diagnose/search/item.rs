@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::candidates::candidate::Candidate;
-use crate::fit::problem::Model;
+pub(super) use crate::fit::adjoint::About;
 
 /// One grid point of a candidate.
 #[derive(Debug, Clone)]
@@ -35,12 +35,4 @@ impl Item {
     pub fn place(&self) -> (usize, usize) {
         (self.candidate, self.start)
     }
-}
-
-/// What is known about the model that candidates are probed about.
-pub(super) struct About<'a> {
-    pub model: &'a Model,
-    pub residual: &'a [f64],
-    /// What its own numbers can imitate, orthonormal.
-    pub basis: &'a [Vec<f64>],
 }

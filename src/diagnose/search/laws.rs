@@ -119,7 +119,8 @@ fn fit_laws(
 fn free_curve(study: &mut Study<'_, '_>, best: &Fit, own: &[usize]) -> Option<Fit> {
     let law = &best.model.added[own[0]].cause;
     let (problem, nominal) = (&*study.problem, study.nominal);
-    let drawing = Drawing { problem, nominal, nuisance: study.nuisance(best.free) };
+    let nuisance = study.nuisance(best.free);
+    let drawing = Drawing { problem, nominal, nuisance, watch: study.watch };
     let step = problem.step(Grain::Coarse);
     let bare = best.model.without_all(own);
     let wish = |cause: Candidate| {

@@ -15,7 +15,6 @@
 
 pub(crate) mod starts;
 
-mod adjoint;
 mod beam;
 mod begin;
 mod chain;

@@ -75,7 +75,8 @@ fn bases(study: &Study<'_, '_>, best: &Fit) -> Vec<Fit> {
 }
 
 fn drawing<'s>(study: &'s Study<'_, '_>, base: &Fit) -> Drawing<'s, 's> {
-    Drawing { problem: study.problem, nominal: study.nominal, nuisance: study.nuisance(base.free) }
+    let nuisance = study.nuisance(base.free);
+    Drawing { problem: study.problem, nominal: study.nominal, nuisance, watch: study.watch }
 }
 
 /// Free curves beside a model, and the laws that the leading ones are read as; fits that are hopelessly
@@ -150,7 +151,7 @@ fn by_its_name(study: &mut Study<'_, '_>, base: &Fit, learned: &Fit) {
     // excluded
     let without = study.allowed.without.clone();
     let only = Allowed { only: vec![effect.into()], without, ..Allowed::default() };
-    let all = library(study.problem, study.nominal, &base.model, vec![], &only);
+    let all = library(study.problem, study.nominal, &base.model, vec![], &only, study.watch);
     let wishes: Vec<Wish> = all
         .iter()
         .filter(here)

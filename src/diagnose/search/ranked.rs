@@ -1,32 +1,29 @@
 //! Which grid points of a very large library are simulated: those that explain most to first order.
 //!
-//! Simulating every law at every place takes (places x coordinates x laws) runs. Where that is more than
-//! a stated amount of work, all are ranked by one [`Adjoint`] run first, in which a law costs a few sums
-//! over the samples, and only the leading ones are simulated (sure independence screening: Fan and Lv,
-//! JRSS B 70, 2008).
+//! Where simulating every law at every place is more than a stated amount of [`work`](crate::fit::affordable),
+//! all are ranked by one [`Adjoint`] run first, each by (r'dy)^2 / dy'dy, and only the leading ones are
+//! simulated (sure independence screening: Fan and Lv, JRSS B 70, 2008).
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::adjoint::{Adjoint, Place};
 use super::item::About;
 use super::open_loop::open_loop;
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::probes::Probe;
 use crate::effect::Mechanism;
-use crate::fit::problem::{Grain, Problem};
+use crate::fit::adjoint::{Adjoint, Extent};
+use crate::fit::affordable::{affordable, room};
+use crate::fit::explained::{Effect, Place};
+use crate::fit::problem::Problem;
 use crate::prepare::operating_range::Nominal;
 use crate::system::Origin;
 use crate::watch::Watch;
 
-/// Multiplications of a dense model that simulating all grid points may take, and those that the leading
-/// ones take where it is more.
-const MOST: f64 = 1e11;
-const TAKEN: f64 = 2.5e9;
-/// Evaluations of the law in a step of the integrator.
-const STAGES: f64 = 4.0;
+/// Sums with random signs: the size of a change is known within a third.
+const SIGNS: usize = 16;
 /// Grid points of one law that are simulated.
 const POINTS: usize = 3;
 /// Grid points that are ranked before it is asked whether to stop.
@@ -51,35 +48,33 @@ enum Way<'a> {
     Not,
 }
 
+/// Which grid points are simulated, and what is known of them.
+pub(super) struct Ranked {
+    /// Candidates and their grid points.
+    pub leading: BTreeSet<(usize, usize)>,
+    /// Per probe the sum of squares of what a unit of it does, about; 0 where it was not asked.
+    pub squares: Vec<f64>,
+}
+
 /// The grid points that are simulated, where there are too many for all of them.
 pub(super) fn ranked(
     (problem, nominal): (&Problem<'_>, &Nominal),
     about: &About<'_>,
     candidates: &[Arc<Candidate>],
     probes: &[Probe],
-    room: usize,
     watch: &dyn Watch,
-) -> Option<BTreeSet<(usize, usize)>> {
-    let each = work(problem);
-    if probes.len() as f64 * each <= MOST {
-        return None;
-    }
+) -> Option<Ranked> {
+    let most = affordable(problem, probes.len())?;
+    watch.report(0.06, "ranking candidates by their first order");
     let by = Ranker { problem, nominal };
     let ways: Vec<Way<'_>> = probes.iter().map(|probe| by.way(candidates, probe)).collect();
     let parameters = ways.iter().any(|way| matches!(way, Way::Parameter(..)));
-    let adjoint = Adjoint::new(problem, about, parameters, room, watch)?;
-    let scores = by.scores(&adjoint, (candidates, probes), &ways, watch);
-    let most = (TAKEN / each) as usize;
-    Some(leading(probes, &scores, most))
-}
-
-/// Multiplications of one simulation, were the model dense.
-fn work(problem: &Problem<'_>) -> f64 {
-    let n = problem.base.sizes;
-    let steps = problem.base.sampling_time / problem.step(Grain::Coarse);
-    let stages = if problem.base.signals.time.is_continuous() { STAGES } else { 1.0 };
-    let samples = problem.simulated().len() as f64;
-    samples * steps * stages * (n.x + n.u) as f64 * (n.x + n.y) as f64
+    let of = Extent { signs: SIGNS, parameters, room: room(problem) };
+    let adjoint = Adjoint::new(problem, about, of, watch)?;
+    let effects = by.effects(&adjoint, (candidates, probes), &ways, watch);
+    let scores: Vec<f64> = effects.iter().map(|effect| effect.explained).collect();
+    let squares = effects.iter().map(|effect| effect.squares).collect();
+    Some(Ranked { leading: leading(probes, &scores, most), squares })
 }
 
 /// Of every law the best grid points, of all of these the best.
@@ -138,14 +133,8 @@ impl Ranker<'_, '_> {
             }
         };
         let is_path = cause.wire == Wire::Path;
-        let place = target.and_then(|target| match base.targets.entries[target].1 {
-            Origin::Own(channel) => Some(Place::Force(channel)),
-            // what also goes straight to an output is more than what enters the states
-            Origin::Input(i) if is_path && self.nominal.is_direct(self.problem, i) => None,
-            Origin::Input(i) => Some(Place::Force(base.sizes.w + i)),
-            Origin::Output(o) => Some(Place::Output(o)),
-            _ => None,
-        });
+        let both = (self.problem, self.nominal);
+        let place = target.and_then(|target| Place::of(both, target, is_path));
         let is_law = cause.card.mechanism == Mechanism::Law && cause.also_into.is_empty();
         let (Some(source), Some(place), true) = (source, place, is_law) else { return Way::Not };
         let mut parameters = cause.starts[probe.start].clone();
@@ -157,21 +146,22 @@ impl Ranker<'_, '_> {
         Way::Law(Entering { effect: cause.effect, source, rate, parameters }, place)
     }
 
-    /// What each grid point explains; infinite where that is not asked.
-    fn scores(
+    /// What each grid point does; it explains infinitely much where that is not asked.
+    fn effects(
         &self,
         adjoint: &Adjoint,
         (candidates, probes): (&[Arc<Candidate>], &[Probe]),
         ways: &[Way<'_>],
         watch: &dyn Watch,
-    ) -> Vec<f64> {
-        let mut scores = vec![f64::INFINITY; probes.len()];
+    ) -> Vec<Effect> {
+        let unknown = Effect { explained: f64::INFINITY, squares: 0.0 };
+        let mut effects = vec![unknown; probes.len()];
         // the same law of the same coordinate enters many places
         let mut series: BTreeMap<&Entering<'_>, Vec<usize>> = BTreeMap::new();
         for (i, way) in ways.iter().enumerate() {
             match way {
                 Way::Law(entering, _) => series.entry(entering).or_default().push(i),
-                Way::Parameter(p, grows) => scores[i] = adjoint.parameter_explains(*p, *grows),
+                Way::Parameter(p, grows) => effects[i] = adjoint.parameter_explains(*p, *grows),
                 Way::Not => {}
             }
         }
@@ -190,17 +180,17 @@ impl Ranker<'_, '_> {
                     open_loop(cause.shape.as_ref(), &parameters, z, &adjoint.begins, self.problem);
                 let explains = |&i: &usize| match &ways[i] {
                     Way::Law(_, place) => (i, adjoint.explains(*place, &w)),
-                    _ => (i, f64::INFINITY),
+                    _ => (i, unknown),
                 };
-                own.iter().map(explains).collect::<Vec<(usize, f64)>>()
+                own.iter().map(explains).collect::<Vec<(usize, Effect)>>()
             };
             if watch.stopped() {
                 break;
             }
-            let found: Vec<Vec<(usize, f64)>> = block.par_iter().map(one).collect();
-            found.into_iter().flatten().for_each(|(i, score)| scores[i] = score);
+            let found: Vec<Vec<(usize, Effect)>> = block.par_iter().map(one).collect();
+            found.into_iter().flatten().for_each(|(i, effect)| effects[i] = effect);
         }
-        scores
+        effects
     }
 }
 

@@ -56,7 +56,7 @@ pub(crate) fn search(
     if let Some(y) = problem.simulate(start, Grain::Coarse) {
         problem.flag_spikes(&y);
     }
-    let start = limited(problem, nominal, allowed, most, start.clone());
+    let start = limited(problem, nominal, allowed, most, start.clone(), watch);
     problem.recorrect(&start);
     let y = problem.simulate(&start, Grain::Coarse)?;
     problem.rescale(&y);
@@ -200,6 +200,7 @@ fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
 /// The headline after the veto, with its look-alikes.
 fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched> {
     let headline = study.beam.headline().cloned()?;
+    study.concludes = true;
     let (headline, withdrawn) = vetoed(&mut study, headline);
     let nothing = study.beam.probability(|fit| !fit.free && fit.causes() == 0);
     let found = Found {

@@ -47,6 +47,8 @@ pub(super) struct Study<'a, 'b> {
     /// Laws that memory did not hold, and the causes of the model that the items are about.
     pub left_out: Option<LeftOut>,
     pub about: Vec<String>,
+    /// Whether the search is over and what it found is looked at once more.
+    pub concludes: bool,
     /// Sets that were fitted from a move, and those that were fitted as neighbours.
     pub tried: BTreeSet<SetKey>,
     pub settled: BTreeSet<SetKey>,
@@ -78,6 +80,7 @@ impl<'a, 'b> Study<'a, 'b> {
             items: vec![],
             left_out: None,
             about: vec![],
+            concludes: false,
             tried: BTreeSet::new(),
             settled: BTreeSet::new(),
         }
@@ -88,10 +91,13 @@ impl<'a, 'b> Study<'a, 'b> {
         if free { &self.free } else { &self.held }
     }
 
-    /// Fits, none of them kept yet.
+    /// Fits, none of them kept yet; none where somebody asks to stop, but to conclude or where nothing is
+    /// known.
     pub fn fit(&self, free: bool, wishes: &[Wish], iterations: usize) -> Vec<Fit> {
         let (problem, nuisance) = (&*self.problem, self.nuisance(free));
+        let known = !self.concludes && self.beam.best().is_some();
         let judge = Judge {
+            stop: &|| known && self.watch.stopped(),
             problem,
             nuisance,
             free,
@@ -116,6 +122,9 @@ impl<'a, 'b> Study<'a, 'b> {
             columns: vec![],
             residuals: fit.residual.clone(),
         };
+        if self.watch.stopped() {
+            return vec![];
+        }
         let all: Vec<Fitted> = fits.iter().map(fitted).collect();
         let all: Vec<&Fitted> = all.iter().collect();
         let models = restarted(self.problem, self.nuisance(free), &all, (Grain::Coarse, Part::Fit));
@@ -212,13 +221,13 @@ impl<'a, 'b> Study<'a, 'b> {
                 lines.push(line);
             }
         }
-        let all = library(self.problem, self.nominal, &fit.model, lines, self.allowed);
+        let all = library(self.problem, self.nominal, &fit.model, lines, self.allowed, self.watch);
         let finer = |cause: Arc<Candidate>| {
             if !(cause.blended() && cause.thresholds) {
                 return cause;
             }
             let mut own = Candidate::clone(&cause);
-            own.starts.extend(starts::thresholds(&cause));
+            Arc::make_mut(&mut own.starts).extend(starts::thresholds(&cause));
             Arc::new(own)
         };
         let nuisance = self.nuisance(fit.free);

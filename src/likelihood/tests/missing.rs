@@ -69,3 +69,30 @@ fn nothing_missing_is_seen_as_nothing() {
         assert!(!force.is_seen(), "{} {}", force.channel, force.gain);
     }
 }
+
+#[test]
+fn of_some_channels_the_one_that_is_called_for_is_asked() {
+    // a random force in either of the channels
+    for (channel, seed) in [(0, 4), (1, 5)] {
+        let names = Predictor::new(&system(GANTRY), &[still()]).unwrap().forces();
+        let mut sizes = Sizes { measurement: vec![0.002, 0.004], ..Sizes::default() };
+        sizes.white = vec![0.0; names.len()];
+        sizes.white[channel] = 2.0;
+        let record = simulate(&system(GANTRY), &excitation(2000, 0.02, 20.0, 4), &sizes, seed);
+        let predictor = Predictor::new(&system(GANTRY), &[record]).unwrap();
+        let all = predictor.missing().unwrap();
+        let one = predictor.missing_of(1, &|| false).unwrap();
+        assert_eq!(one.len(), 1);
+        // the drive pushes the trolley nearly as its channel does
+        let is_trolley = ["on_trolley", "drive"].contains(&&one[0].channel[..]);
+        assert_eq!(is_trolley, names[channel].0 == "on_trolley", "{}", one[0].channel);
+        let same = all.iter().find(|force| force.channel == one[0].channel).unwrap();
+        assert_eq!((same.gain, same.rms), (one[0].gain, one[0].rms));
+        assert!(predictor.missing_of(1, &|| true).unwrap().is_empty());
+    }
+}
+
+/// A record in which nothing random happens.
+fn still() -> lacuna_core::data::Record {
+    simulate(&system(GANTRY), &excitation(200, 0.02, 20.0, 4), &Sizes::default(), 1)
+}

@@ -50,6 +50,10 @@ pub fn note(note: &Note) -> String {
              explains to first order (an adjoint run), and the last {laws} were left there. Two laws of \
              which neither shows alone may have been missed; --only and --without make the search smaller."
         ),
+        Note::ForcesLeftOut { channels, of } => format!(
+            "Of {of} channels {channels} were asked for the force that is missing there: all of them are too \
+             much work with so large a model. `lacuna missing` asks them all."
+        ),
         Note::Unresolved { output, left, error, unit } => format!(
             "What the simulation leaves of {output} ({} rms) is no more than its own error, of the \
              integrator and of rounding ({}): the record tells nothing beyond. With more substeps it \

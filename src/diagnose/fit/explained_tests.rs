@@ -3,10 +3,15 @@
 use super::*;
 use crate::candidates::candidate::Wire;
 use crate::candidates::library::{Allowed, library};
-use crate::data::Record;
-use crate::fit::problem::{Model, Span};
+use crate::data::{Random, Record};
+use crate::fit::adjoint::{About, Extent};
+use crate::fit::problem::{Grain, Model, Part, Span};
 use crate::prepare::prepared::Prepared;
+use crate::statistics::add_to_basis;
 use lacuna_core::file::{Format, parse};
+
+const SIGNS: usize = 16;
+const EXTENT: Extent = Extent { signs: SIGNS, parameters: true, room: 1 << 30 };
 
 /// A nonlinear machine, by steps of an integrator or from sample to sample.
 fn model(time: &str) -> String {
@@ -45,10 +50,10 @@ fn compared(time: &str, tolerance: f64) {
     let y = problem.simulate(start, Grain::Coarse).unwrap();
     let residual = problem.residual(&y, Part::Fit);
     let about = About { model: start, residual: &residual, basis: &[] };
-    let adjoint = Adjoint::new(problem, &about, true, 1 << 30, &()).unwrap();
+    let adjoint = Adjoint::new(problem, &about, EXTENT, &()).unwrap();
     let only = Allowed { only: vec!["cubic".into(), "parameter".into()], ..Allowed::default() };
     let mut seen = 0;
-    for cause in library(problem, nominal, start, vec![], &only) {
+    for cause in library(problem, nominal, start, vec![], &only, &()) {
         // so little that the machine answers as a line
         let size = 1e-8;
         let job = problem.job(&start.with(&cause, vec![size]), Grain::Coarse).unwrap();
@@ -59,11 +64,10 @@ fn compared(time: &str, tolerance: f64) {
             .zip(&residual)
             .map(|(a, b)| (b - a) / size)
             .collect();
-        let count = adjoint.samples.len();
         let (sums, place): (Vec<f64>, _) = match &cause.wire {
             Wire::Parameter(p) => {
                 let own = &adjoint.parameters.as_ref().unwrap()[0];
-                (own[p * SUMS..][..SUMS].to_vec(), "parameter".into())
+                (own[p * (SIGNS + 1)..][..SIGNS + 1].to_vec(), "parameter".into())
             }
             Wire::Stage(route) => {
                 let w: Vec<f64> = adjoint.seen[route.source].iter().map(|z| z.powi(3)).collect();
@@ -73,8 +77,10 @@ fn compared(time: &str, tolerance: f64) {
                     "u" => 2,
                     _ => continue,
                 };
-                let own = adjoint.weights[place].chunks_exact(count);
-                (own.map(|own| dot(own, &w)).collect(), cause.into.clone())
+                let mut sums = vec![0.0; SIGNS + 1];
+                let own = adjoint.at(Place::Force(place));
+                own.zip(&w).for_each(|(own, w)| add(&mut sums, own, *w));
+                (sums, cause.into.clone())
             }
             _ => continue,
         };
@@ -101,4 +107,43 @@ fn sums_of_outputs_are_followed_back_from_sample_to_sample() {
 fn sums_of_outputs_are_followed_back_through_the_steps_of_an_integrator() {
     // what enters is held over a sample, which a law inside the steps is not
     compared("continuous", 0.03);
+}
+
+/// What a curve of several numbers does by simulation, against what the adjoint says of it.
+#[test]
+fn several_laws_explain_their_score_statistic() {
+    let system = parse(&model("discrete"), "machine.toml", Format::Toml).unwrap();
+    let prepared = Prepared::new(&system, &[record()], 0.7).unwrap();
+    let (problem, nominal) = (&prepared.problem, &prepared.nominal);
+    let start: &Model = &prepared.start;
+    let y = problem.simulate(start, Grain::Coarse).unwrap();
+    let residual = problem.residual(&y, Part::Fit);
+    let about = About { model: start, residual: &residual, basis: &[] };
+    let adjoint = Adjoint::new(problem, &about, Extent { signs: 600, ..EXTENT }, &()).unwrap();
+    let only = Allowed { only: vec!["cubic".into(), "linear".into()], ..Allowed::default() };
+    let all = library(problem, nominal, start, vec![], &only, &());
+    let size = 1e-8;
+    let here = all
+        .iter()
+        .filter(|cause| cause.into == "u" && matches!(cause.of.as_deref(), Some("x" | "v")));
+    let (mut columns, mut terms): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (vec![], vec![]);
+    for cause in here {
+        let Wire::Stage(route) = &cause.wire else { continue };
+        let power = if cause.effect == "cubic" { 3 } else { 1 };
+        let job = problem.job(&start.with(cause, vec![size]), Grain::Coarse).unwrap();
+        let moved = problem.run(&[job], Span::Fit).swap_remove(0).unwrap();
+        let moved = problem.residual(&moved, Part::Fit);
+        columns.push(moved.iter().zip(&residual).map(|(a, b)| (b - a) / size).collect());
+        terms.push(adjoint.seen[route.source].iter().map(|z| z.powi(power)).collect());
+    }
+    let count = columns.len();
+    assert_eq!(count, 4);
+    let mut own = vec![];
+    columns.into_iter().for_each(|column| add_to_basis(&mut own, column));
+    let exact: f64 = own.iter().map(|q| dot(q, &residual).powi(2)).sum();
+    let at = |k: usize| terms.iter().enumerate().map(|(j, term)| (j, term[k])).collect();
+    let terms: Vec<Vec<(usize, f64)>> = (0..terms[0].len()).map(at).collect();
+    let explained = adjoint.joint_score(Place::Force(2), count, &terms);
+    // 600 signs: known within a twentieth
+    assert!((explained / exact - 1.0).abs() < 0.2, "{explained} is not {exact}");
 }

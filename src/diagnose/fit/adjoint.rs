@@ -9,23 +9,21 @@
 //! ```
 //!
 //! (adjoint-state method: Plessix, Geophysical Journal International 167, 2006; Giles and Pierce, Flow,
-//! Turbulence and Combustion 65, 2000). What a law explains to first order is (r'dy)^2 / dy'dy: the sums
-//! are with the residual r and with random signs z, as E (z'dy)^2 = dy'dy (Hutchinson, Communications in
-//! Statistics 19, 1990).
+//! Turbulence and Combustion 65, 2000). What laws explain by such sums is in `explained`.
 
-use super::item::About;
+use std::ops::Range;
+
+use rayon::prelude::*;
+
 use crate::data::Random;
-use crate::fit::problem::{Grain, Part, Problem};
+use crate::fit::problem::{Grain, Model, Part, Problem};
 use crate::statistics::{dot, project};
 use crate::system::{Jacobian, Lane, Plan, Transition};
 use crate::watch::Watch;
 
-/// Sums with random signs: the size of a change is known within a third.
-const SIGNS: usize = 16;
-/// Sums of outputs that are followed back.
-const SUMS: usize = SIGNS + 1;
-/// Samples after which it is asked whether to stop.
+/// Samples after which it is asked whether to stop, and those that one thread follows along parameters.
 const AT_ONCE: usize = 128;
+const BLOCK: usize = 256;
 
 /// Derivatives of one sample, row by row.
 #[derive(PartialEq)]
@@ -35,29 +33,42 @@ struct Slopes {
     c: Vec<f64>,
 }
 
+/// What is known about a model that laws are asked about.
+pub(crate) struct About<'a> {
+    pub model: &'a Model,
+    pub residual: &'a [f64],
+    /// What its own numbers can imitate, orthonormal.
+    pub basis: &'a [Vec<f64>],
+}
+
+/// How an adjoint is made.
+#[derive(Clone, Copy)]
+pub(crate) struct Extent {
+    /// Sums with random signs.
+    pub signs: usize,
+    /// Whether parameters are asked for too.
+    pub parameters: bool,
+    /// Bytes that derivatives may take.
+    pub room: usize,
+}
+
 /// The course of a model over the samples that are fitted, and its adjoint.
-pub(super) struct Adjoint {
+pub(crate) struct Adjoint {
     /// Every entry of the source table at every sample.
     pub seen: Vec<Vec<f64>>,
     /// The samples, and where segments begin among them.
-    samples: Vec<usize>,
+    pub(super) samples: Vec<usize>,
     pub begins: Vec<usize>,
     /// Own channels and inputs: outputs come after them.
-    forces: usize,
-    /// Per place the weights of what enters there: sums one after the other, sample by sample.
-    weights: Vec<Vec<f64>>,
+    pub(super) forces: usize,
+    /// Sums of outputs that are followed back: that with the residual, then those with signs.
+    pub(super) sums: usize,
+    /// Per place the weights of what enters there: samples one after the other, sum by sum.
+    pub(super) weights: Vec<Vec<f64>>,
     /// What a unit of every parameter does to the sums, and of its growth per second.
-    parameters: Option<[Vec<f64>; 2]>,
+    pub(super) parameters: Option<[Vec<f64>; 2]>,
     /// Sum of squares of what is to be explained.
-    total: f64,
-}
-
-/// Where something enters.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Place {
-    /// Own channels, then inputs.
-    Force(usize),
-    Output(usize),
+    pub(super) total: f64,
 }
 
 /// A model's course with its derivatives.
@@ -70,13 +81,12 @@ struct Course {
 }
 
 impl Adjoint {
-    /// The adjoint about a model; `parameters` says whether those are asked for too. `None` where
-    /// derivatives take more than `room` bytes, the model cannot be followed, or somebody asks to stop.
+    /// The adjoint about a model; `None` where derivatives take more than there is room for, the model
+    /// cannot be followed, or somebody asks to stop.
     pub fn new(
         problem: &Problem<'_>,
         about: &About<'_>,
-        parameters: bool,
-        room: usize,
+        of: Extent,
         watch: &dyn Watch,
     ) -> Option<Self> {
         let job = problem.job(about.model, Grain::Coarse)?;
@@ -85,14 +95,15 @@ impl Adjoint {
             samples: problem.simulated(),
             begins: vec![],
             forces: job.plan.sizes.w + job.plan.sizes.u,
+            sums: of.signs + 1,
             weights: vec![],
             parameters: None,
             total: 0.0,
         };
-        let course = own.forward(problem, (&job.plan, &job.lane), room, watch)?;
-        let rho = own.sums(problem, about);
+        let course = own.forward(problem, (&job.plan, &job.lane), of.room, watch)?;
+        let rho = own.weighted(problem, about);
         let lambda = own.backward(problem, &course, &rho, watch)?;
-        if parameters {
+        if of.parameters {
             let model = (&*job.plan, &job.lane);
             own.parameters =
                 Some(own.along_parameters(problem, model, (&course, &lambda, &rho), watch)?);
@@ -147,13 +158,13 @@ impl Adjoint {
     }
 
     /// Weights rho of all sums, sample by sample: outputs, and for each the sums.
-    fn sums(&mut self, problem: &Problem<'_>, about: &About<'_>) -> Vec<Vec<f64>> {
+    fn weighted(&mut self, problem: &Problem<'_>, about: &About<'_>) -> Vec<Vec<f64>> {
         let mut left = about.residual.to_vec();
         project(about.basis, &mut left);
         self.total = dot(&left, &left);
         let mut random = Random::new(1);
         let mut all = vec![left];
-        all.extend((0..SIGNS).map(|_| {
+        all.extend((1..self.sums).map(|_| {
             let sign = |_: &f64| if random.below(2) == 0 { -1.0 } else { 1.0 };
             let mut signs: Vec<f64> = about.residual.iter().map(sign).collect();
             project(about.basis, &mut signs);
@@ -162,12 +173,13 @@ impl Adjoint {
         let ny = problem.y.len();
         let count = about.residual.len() / ny.max(1);
         let mut counted = problem.samples(Part::Fit).enumerate().peekable();
-        let mut rho = vec![vec![0.0; ny * SUMS]; self.samples.len()];
+        let sums = self.sums;
+        let mut rho = vec![vec![0.0; ny * sums]; self.samples.len()];
         for (rho, &k) in rho.iter_mut().zip(&self.samples) {
             let Some((at, _)) = counted.next_if(|(_, counted)| *counted == k) else { continue };
             for o in 0..ny {
                 let over = problem.weight[o][k] / problem.scale[o];
-                (0..SUMS).for_each(|f| rho[o * SUMS + f] = over * all[f][o * count + at]);
+                (0..sums).for_each(|f| rho[o * sums + f] = over * all[f][o * count + at]);
             }
         }
         rho
@@ -182,8 +194,9 @@ impl Adjoint {
         watch: &dyn Watch,
     ) -> Option<Vec<Vec<f64>>> {
         let (n, forces, ny, count) = (course.n, self.forces, problem.y.len(), rho.len());
-        self.weights = vec![vec![0.0; SUMS * count]; forces + ny];
-        let mut lambda = vec![0.0; n * SUMS];
+        let sums = self.sums;
+        self.weights = vec![vec![0.0; sums * count]; forces + ny];
+        let mut lambda = vec![0.0; n * sums];
         let mut all = vec![vec![]; count];
         for at in (0..count).rev() {
             if at % AT_ONCE == 0 && watch.stopped() {
@@ -193,28 +206,29 @@ impl Adjoint {
                 lambda.fill(0.0);
             }
             let Slopes { a, g, c } = &course.slopes[course.at[at]];
-            let (mut into, mut before) = (vec![0.0; forces * SUMS], vec![0.0; n * SUMS]);
+            let (mut into, mut before) = (vec![0.0; forces * sums], vec![0.0; n * sums]);
             for i in 0..n {
-                let own = &lambda[i * SUMS..][..SUMS];
+                let own = &lambda[i * sums..][..sums];
                 spread(&mut into, &g[i * forces..][..forces], own);
                 spread(&mut before, &a[i * n..][..n], own);
             }
             for o in 0..ny {
-                spread(&mut before, &c[o * n..][..n], &rho[at][o * SUMS..][..SUMS]);
+                spread(&mut before, &c[o * n..][..n], &rho[at][o * sums..][..sums]);
             }
             for (place, weights) in self.weights.iter_mut().enumerate() {
                 let from = match place < forces {
-                    true => &into[place * SUMS..][..SUMS],
-                    false => &rho[at][(place - forces) * SUMS..][..SUMS],
+                    true => &into[place * sums..][..sums],
+                    false => &rho[at][(place - forces) * sums..][..sums],
                 };
-                (0..SUMS).for_each(|f| weights[f * count + at] = from[f]);
+                weights[at * sums..][..sums].copy_from_slice(from);
             }
             all[at] = std::mem::replace(&mut lambda, before);
         }
         Some(all)
     }
 
-    /// What a unit of every parameter, and of its growth per second, does to the sums.
+    /// What a unit of every parameter, and of its growth per second, does to the sums; samples are dealt
+    /// out to all threads, and their shares added in order.
     fn along_parameters(
         &self,
         problem: &Problem<'_>,
@@ -224,75 +238,63 @@ impl Adjoint {
     ) -> Option<[Vec<f64>; 2]> {
         let drive = problem.fit_drive();
         let given = (&lane.theta[..], &lane.effect_values[..]);
-        let mut along = Transition::new(problem.system, plan, drive, given, true)?;
-        let (n, ny, nt) = (course.n, problem.y.len(), lane.theta.len());
-        let mut to: Jacobian = along.jacobian();
-        let (mut c, mut y, mut h) = (vec![0.0; ny * n], vec![0.0; ny], vec![0.0; ny * nt]);
-        let (still, mut x) = (vec![0.0; self.forces], vec![0.0; n]);
-        let mut sums = [vec![0.0; nt * SUMS], vec![0.0; nt * SUMS]];
-        let mut at = 0;
-        for (number, segment) in drive.segments.iter().enumerate().filter(|(_, s)| !s.is_empty()) {
+        let (n, ny, nt, each) = (course.n, problem.y.len(), lane.theta.len(), self.sums);
+        let (mut pieces, mut first) = (vec![], 0);
+        for (number, segment) in drive.segments.iter().enumerate() {
+            for from in segment.clone().step_by(BLOCK) {
+                let to = segment.end.min(from + BLOCK);
+                pieces.push((number, from..to, first));
+                first += to - from;
+            }
+        }
+        let share = |(number, samples, mut at): (usize, Range<usize>, usize)| {
+            let mut along = Transition::new(problem.system, plan, drive, given, true)?;
+            let mut to: Jacobian = along.jacobian();
+            let (mut c, mut y, mut h) = (vec![0.0; ny * n], vec![0.0; ny], vec![0.0; ny * nt]);
+            let (still, mut x) = (vec![0.0; self.forces], vec![0.0; n]);
+            let mut sums = [vec![0.0; nt * each], vec![0.0; nt * each]];
             along.start(number);
             let clock = drive.clocks.get(number).copied().unwrap_or(0.0);
-            for k in segment.clone() {
+            for k in samples {
                 if watch.stopped() {
                     return None;
                 }
                 along.place(&course.states[at]);
                 along.observe(k, &mut y, &mut c, &mut h);
                 along.advance(k, &still, &mut x, &mut to);
-                let mut now = vec![0.0; nt * SUMS];
+                let mut now = vec![0.0; nt * each];
                 for i in 0..n {
-                    spread(&mut now, &to.theta[i * nt..][..nt], &lambda[at][i * SUMS..][..SUMS]);
+                    spread(&mut now, &to.theta[i * nt..][..nt], &lambda[at][i * each..][..each]);
                 }
                 for o in 0..ny {
-                    spread(&mut now, &h[o * nt..][..nt], &rho[at][o * SUMS..][..SUMS]);
+                    spread(&mut now, &h[o * nt..][..nt], &rho[at][o * each..][..each]);
                 }
                 let time = clock + k as f64 * problem.base.sampling_time;
-                sums[0].iter_mut().zip(&now).for_each(|(sum, v)| *sum += v);
-                sums[1].iter_mut().zip(&now).for_each(|(sum, v)| *sum += time * v);
+                add(&mut sums[0], &now, 1.0);
+                add(&mut sums[1], &now, time);
                 at += 1;
             }
+            Some(sums)
+        };
+        let shares: Vec<Option<[Vec<f64>; 2]>> = pieces.into_par_iter().map(share).collect();
+        let mut sums = [vec![0.0; nt * each], vec![0.0; nt * each]];
+        for share in shares {
+            sums.iter_mut().zip(share?).for_each(|(sums, share)| add(sums, &share, 1.0));
         }
         Some(sums)
-    }
-
-    /// What something explains of the residual to first order: `w` enters at a place, sample by sample.
-    pub fn explains(&self, place: Place, w: &[f64]) -> f64 {
-        let place = match place {
-            Place::Force(force) => force,
-            Place::Output(output) => self.forces + output,
-        };
-        let count = self.samples.len();
-        let sums = self.weights[place].chunks_exact(count.max(1)).map(|own| dot(own, w));
-        self.explained(&sums.collect::<Vec<f64>>())
-    }
-
-    /// The same of another value of a parameter, or of one that grows.
-    pub fn parameter_explains(&self, parameter: usize, grows: bool) -> f64 {
-        let own = |all: &[Vec<f64>; 2]| {
-            self.explained(&all[usize::from(grows)][parameter * SUMS..][..SUMS])
-        };
-        self.parameters.as_ref().map_or(0.0, own)
-    }
-
-    /// (r'dy)^2 / dy'dy, from the sum with r and those with random signs.
-    fn explained(&self, sums: &[f64]) -> f64 {
-        let size = dot(&sums[1..], &sums[1..]) / SIGNS as f64;
-        let explained = sums[0] * sums[0] / size;
-        if explained.is_finite() { explained.min(self.total) } else { 0.0 }
     }
 }
 
 /// to[j] += row[j] * own, for all sums at once; most of a row is often 0.
 fn spread(to: &mut [f64], row: &[f64], own: &[f64]) {
-    for (to, &slope) in to.chunks_exact_mut(SUMS).zip(row) {
+    for (to, &slope) in to.chunks_exact_mut(own.len()).zip(row) {
         if slope != 0.0 {
-            to.iter_mut().zip(own).for_each(|(to, own)| *to += slope * own);
+            add(to, own, slope);
         }
     }
 }
 
-#[cfg(test)]
-#[path = "adjoint_tests.rs"]
-mod tests;
+/// to += by * own.
+pub(super) fn add(to: &mut [f64], own: &[f64], by: f64) {
+    to.iter_mut().zip(own).for_each(|(to, own)| *to += by * own);
+}
