@@ -16,6 +16,7 @@ pub(crate) mod nearest_shape;
 mod noise_level;
 pub(crate) mod note;
 mod numbers;
+mod order;
 pub(crate) mod per_record;
 pub(crate) mod pictures;
 mod rectified;

@@ -10,6 +10,7 @@ use crate::findings::causes::Scores as By;
 use crate::findings::context::{Context, Source};
 use crate::findings::finding::{Left, OtherTrack, Ranked, Scores, Verdict};
 use crate::findings::hand_over::Searched;
+use crate::findings::order::most_first;
 use crate::findings::remarks::made_up_for;
 use crate::findings::series::{Series, TestSeries};
 use crate::fit::finished::Finished;
@@ -96,6 +97,7 @@ impl Context<'_, '_> {
             _ => BTreeMap::new(),
         };
         series.test = test.series(system, &before, &after)?;
+        most_first(&mut causes, chosen);
         Ok(Searched {
             verdict,
             track: chosen.track,

@@ -33,6 +33,8 @@ pub(crate) struct Belief {
     pub law: f64,
     /// That any law is.
     pub place: f64,
+    /// Log odds of the model with it against that without it, where both were fitted.
+    pub odds: Option<f64>,
     /// That each member of the set is, the headline first.
     pub members: Vec<f64>,
     /// That each of the others is.

@@ -254,6 +254,6 @@ fn slot(own: &Arc<Candidate>, cause: &NamedCause, alike: &[(Arc<Candidate>, f64)
         members.push(*chance);
     }
     let (law, place) = (cause.probability, cause.place_probability);
-    let belief = Belief { law, place, members, others: vec![] };
+    let belief = Belief { law, place, odds: Some(cause.log_odds), members, others: vec![] };
     Slot { set, others: vec![], laws: vec![], score: 0.0, belief: Some(belief) }
 }

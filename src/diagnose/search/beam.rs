@@ -140,6 +140,14 @@ impl Beam {
         self.fits.remove(key);
     }
 
+    /// Takes out every set that has a cause.
+    pub fn rule_out(&mut self, cause: &Candidate) {
+        self.fits.retain(|_, fit| {
+            let own = &fit.model.added[fit.model.known()..];
+            !own.iter().any(|added| added.cause.same_cause(cause))
+        });
+    }
+
     /// All fits, by their keys.
     pub fn fits(&self) -> impl Iterator<Item = &Fit> {
         self.fits.values()

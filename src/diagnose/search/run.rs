@@ -199,9 +199,8 @@ fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
 
 /// The headline after the veto, with its look-alikes.
 fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched> {
-    let headline = study.beam.headline().cloned()?;
     study.concludes = true;
-    let (headline, withdrawn) = vetoed(&mut study, headline);
+    let (headline, withdrawn) = vetoed(&mut study)?;
     let nothing = study.beam.probability(|fit| !fit.free && fit.causes() == 0);
     let found = Found {
         slots: slots(study.problem, &study.beam, &headline),

@@ -90,6 +90,7 @@ fn slot(problem: &Problem<'_>, beam: &Beam, headline: &Fit, own: &[usize]) -> Sl
     let belief = Belief {
         law: beam.probability(|fit| laws.iter().all(|law| has(fit, law))),
         place: beam.probability(|fit| has_place(fit, laws[0])),
+        odds: without.map(|without| headline.posterior() - without.posterior()),
         members: chances(&set),
         others: chances(&others),
     };

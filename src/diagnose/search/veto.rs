@@ -16,19 +16,25 @@ use crate::fit::problem::{Added, Grain, Part};
 /// Iterations of a fit without a cause.
 const ITERATIONS: usize = 8;
 
-/// A fit without the causes that the held part refutes, and these.
-pub(super) fn vetoed(study: &mut Study<'_, '_>, fit: Fit) -> (Fit, Vec<Added>) {
-    let (mut fit, mut withdrawn) = (fit, vec![]);
+/// The most probable set of causes none of which the held part refutes, and the causes that it does.
+/// A set that has a refuted cause is no hypothesis any more, and probabilities are those of the others.
+pub(super) fn vetoed(study: &mut Study<'_, '_>) -> Option<(Fit, Vec<Added>)> {
+    let mut withdrawn: Vec<Added> = vec![];
     let held = Stretches::new(study.problem, Part::Choose);
-    while let Some((index, rest)) = refuted(study, &fit, &held) {
-        withdrawn.push(fit.model.added[index].clone());
-        fit = rest;
+    let mut fit = study.beam.headline()?.clone();
+    while let Some(index) = refuted(study, &fit, &held) {
+        let gone = fit.model.added[index].clone();
+        study.beam.rule_out(&gone.cause);
+        withdrawn.push(gone);
+        fit = study.beam.headline()?.clone();
     }
-    (fit, withdrawn)
+    // where another law stands at its place now, a cause was replaced
+    withdrawn.retain(|gone| !fit.model.added.iter().any(|a| a.cause.same_place(&gone.cause)));
+    Some((fit, withdrawn))
 }
 
-/// The cause that the held part speaks against most, and the fit without it.
-fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<(usize, Fit)> {
+/// The cause that the held part speaks against most.
+fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<usize> {
     let all: Vec<usize> = (fit.model.known()..fit.model.added.len()).collect();
     if study.problem.samples(Part::Choose).next().is_none() || all.is_empty() {
         return None;
@@ -46,7 +52,7 @@ fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<(us
     let gains = densities.map(|bare| bare.map_or(f64::INFINITY, |bare| with - bare));
     let (at, gain) = gains.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let odds = fit.posterior() - without[at].posterior();
-    (gain <= -REFUTED.min(odds.max(0.0))).then(|| (all[at], without[at].clone()))
+    (gain <= -REFUTED.min(odds.max(0.0))).then_some(all[at])
 }
 
 /// The fit without one of its causes.
