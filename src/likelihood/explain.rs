@@ -27,8 +27,8 @@ use super::replay::Pass;
 use super::tangent::Site;
 use super::weigh::{Weighed, plainest};
 
-/// Odds, as a natural logarithm, by which held samples must speak against a cause for it to be withdrawn,
-/// or those that the fitted ones gave it where they are less: 20 to 1 (Kass and Raftery, JASA 90, 1995).
+/// Log odds by which held samples must speak against a cause, or those that the fitted ones gave it where
+/// they are less: 20 to 1 (Kass and Raftery, JASA 90, 1995).
 const REFUTED: f64 = 3.0;
 
 impl Predictor {
@@ -211,8 +211,7 @@ impl Predictor {
         }
     }
 
-    /// The cause that held samples speak against most, and what is left without it; `fit` is the
-    /// predictor that does not see them.
+    /// The cause that held samples speak against most, and the rest; `fit` does not see these samples.
     fn refuted(
         &self,
         fit: &Self,
@@ -232,8 +231,8 @@ impl Predictor {
             Some((with.map_or(f64::NEG_INFINITY, |with| with - bare), i, rest))
         };
         let worst = (0..found.len()).filter_map(one).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let odds = found[worst.1].log_odds.max(0.0);
-        (worst.0 <= -REFUTED.min(odds)).then_some((worst.1, worst.2))
+        let most = REFUTED.min(found[worst.1].log_odds.max(0.0));
+        (worst.0 <= -most).then_some((worst.1, worst.2))
     }
 
     /// The causes that are left, fitted to all samples.
