@@ -52,7 +52,7 @@ pub fn note(note: &Note) -> String {
         ),
         Note::ForcesLeftOut { channels, of } => format!(
             "Of {of} channels {channels} were asked for the force that is missing there: all of them are too \
-             much work with so large a model. `lacuna missing` asks them all."
+             much work with so large a model. `lacuna look` with the model asks them all."
         ),
         Note::Unresolved { output, left, error, unit } => format!(
             "What the simulation leaves of {output} ({} rms) is no more than its own error, of the \
