@@ -1,8 +1,9 @@
 //! Every decision threshold of the search, in natural logarithms of odds unless said otherwise.
 //!
-//! A model is judged by one number, ln p(data | model) + ln p(model) (`evidence`); the first five
-//! entries are the prior p(model), the next three say how a posterior is read, the last four only save
-//! work: a larger value never names anything else but slower.
+//! A model is judged by one number, ln p(data | model) + ln p(model) (`evidence`); the first six
+//! entries are the prior p(model), the next two say how a posterior is read, the last four only save
+//! work: a larger value never names anything else but slower. What samples that were not fitted refute,
+//! `likelihood::refutes` says for a search by free runs and by innovations alike.
 
 /// What one more cause takes beyond the choice among all names: a cause has ln odds of
 /// -(this + ln(number of names)).
@@ -16,15 +17,15 @@ pub(crate) const ALL_PARAMETERS: f64 = 5.0;
 pub(crate) const SIZES: f64 = 9.0;
 /// What a law without a name takes beyond its numbers: any of the library is more probable.
 pub(crate) const UNNAMED: f64 = 10.0;
+/// What the free run of a model may leave, mean square, in units of what the one without causes leaves.
+/// That is error and noise, so noise alone is less: the prior of its variance ends there, whatever likelihood
+/// a larger one would have (a disturbance with a pole near 1 forgives any drift); a tenth is left to chance.
+pub(crate) const LEAVES: f64 = 1.1;
 
 /// How much less probable than the best a plainer law or set may be and still be the headline.
 pub(crate) const AS_GOOD: f64 = 1.5;
 /// Odds against the best above which a look-alike is said.
 pub(crate) const LOOK_ALIKE: f64 = 0.02;
-/// Odds, as a natural logarithm, by which samples that were not fitted must speak against a cause
-/// for it to be withdrawn, or those that the fitted ones gave it where they are less: 20 to 1 (Kass and
-/// Raftery, JASA 90, 1995: strong). Samples that a cause does not reach say next to nothing.
-pub(crate) const REFUTED: f64 = 3.0;
 
 /// How far below the best a first-order prediction may be to be fitted.
 pub(crate) const PREDICTED: f64 = 6.0;

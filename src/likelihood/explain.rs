@@ -18,6 +18,7 @@ use nalgebra::DMatrix;
 use super::error::LikelihoodError;
 use super::explanation::{Explanation, NamedCause};
 use super::found::{Found, dealt, joined};
+use super::held_out::refutes;
 use super::hypothesis::{Hypothesis, names};
 use super::noise::{Layout, Noise};
 use super::places::Survey;
@@ -26,10 +27,6 @@ use super::ranked::MISSING;
 use super::replay::Pass;
 use super::tangent::Site;
 use super::weigh::{Weighed, plainest};
-
-/// Log odds by which held samples must speak against a cause, or those that the fitted ones gave it where
-/// they are less: 20 to 1 (Kass and Raftery, JASA 90, 1995).
-const REFUTED: f64 = 3.0;
 
 impl Predictor {
     /// What explains the records, at most `most` causes; `held` are samples that nothing is fitted to
@@ -230,9 +227,9 @@ impl Predictor {
             // what cannot even be run with it is refuted
             Some((with.map_or(f64::NEG_INFINITY, |with| with - bare), i, rest))
         };
-        let worst = (0..found.len()).filter_map(one).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let most = REFUTED.min(found[worst.1].log_odds.max(0.0));
-        (worst.0 <= -most).then_some((worst.1, worst.2))
+        let (gain, i, rest) =
+            (0..found.len()).filter_map(one).min_by(|a, b| a.0.total_cmp(&b.0))?;
+        refutes(gain, found[i].log_odds).then_some((i, rest))
     }
 
     /// The causes that are left, fitted to all samples.

@@ -67,6 +67,7 @@ pub use ranked::RankedPlaces;
 pub use self::{
     autoregressive::Autoregression,
     explanation::{Explanation, NamedCause},
+    held_out::refutes,
     missing::Explained,
     model::{Fitted, NoiseModel},
     noise::{Component, Slow},

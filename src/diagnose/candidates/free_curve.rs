@@ -75,7 +75,6 @@ impl Drawing<'_, '_> {
         let now = self.problem.residual(y, Part::Fit);
         let basis = self.nuisance.basis(self.problem, model, y);
         let at = At { model, now, basis };
-        let going_on = |places| <[Vec<_>]>::iter(places).take_while(|_| !self.watch.stopped());
         let best = |causes: &[Arc<Candidate>]| {
             let drawn = causes.iter().filter_map(|cause| self.sketch(&at, cause));
             drawn.max_by(|a, b| a.share.total_cmp(&b.share))
@@ -88,7 +87,9 @@ impl Drawing<'_, '_> {
         let places = chosen.filter_map(|i| self.curves(&mut builder, &spots[i]));
         let places: Vec<Vec<Arc<Candidate>>> = places.collect();
         // all places with few knots, the leading ones with others too
-        let mut leading: Vec<(Sketch, &[Arc<Candidate>])> = going_on(&places)
+        let mut leading: Vec<(Sketch, &[Arc<Candidate>])> = places
+            .iter()
+            .take_while(|_| !self.watch.stopped())
             .filter_map(|causes| Some((best(&causes[..1])?, &causes[1..])))
             .collect();
         leading.sort_by(|a, b| b.0.share.total_cmp(&a.0.share));

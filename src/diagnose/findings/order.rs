@@ -33,7 +33,7 @@ fn ordered(causes: &mut [Cause], places: &[Vec<usize>], slots: &[Slot], by_odds:
     };
     let mut order: Vec<usize> = (0..places.len().min(causes.len())).collect();
     order.sort_by(compared);
-    let sorted: Vec<Cause> = order.iter().map(|&i| causes[i].clone()).collect();
+    let sorted: Vec<Cause> = order.iter().map(|&i| std::mem::take(&mut causes[i])).collect();
     for (cause, own) in causes.iter_mut().zip(sorted) {
         *cause = own;
     }

@@ -1,7 +1,9 @@
 //! Sums of outputs, followed back and simulated.
 
+use std::sync::Arc;
+
 use super::*;
-use crate::candidates::candidate::Wire;
+use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::library::{Allowed, library};
 use crate::data::{Random, Record};
 use crate::fit::adjoint::{About, Extent};
@@ -41,29 +43,35 @@ fn record() -> Record {
     record.output("y", own[0].clone()).unwrap().output("z", own[1].clone()).unwrap()
 }
 
+/// What the baseline leaves of the samples that are fitted.
+fn left(prepared: &Prepared<'_>) -> Vec<f64> {
+    let y = prepared.problem.simulate(&prepared.start, Grain::Coarse).unwrap();
+    prepared.problem.residual(&y, Part::Fit)
+}
+
+/// What a unit of a law takes off these residuals, by simulation: so little of it that the machine answers
+/// as a line.
+fn column(prepared: &Prepared<'_>, cause: &Arc<Candidate>, residual: &[f64]) -> Vec<f64> {
+    let (problem, size) = (&prepared.problem, 1e-8);
+    let job = problem.job(&prepared.start.with(cause, vec![size]), Grain::Coarse).unwrap();
+    let moved = problem.run(&[job], Span::Fit).swap_remove(0).unwrap();
+    let moved = problem.residual(&moved, Part::Fit);
+    moved.iter().zip(residual).map(|(a, b)| (b - a) / size).collect()
+}
+
 /// What every law of one number does by simulation, against what the adjoint says of it.
 fn compared(time: &str, tolerance: f64) {
     let system = parse(&model(time), "machine.toml", Format::Toml).unwrap();
     let prepared = Prepared::new(&system, &[record()], 0.7).unwrap();
     let (problem, nominal) = (&prepared.problem, &prepared.nominal);
     let start: &Model = &prepared.start;
-    let y = problem.simulate(start, Grain::Coarse).unwrap();
-    let residual = problem.residual(&y, Part::Fit);
+    let residual = left(&prepared);
     let about = About { model: start, residual: &residual, basis: &[] };
     let adjoint = Adjoint::new(problem, &about, EXTENT, &()).unwrap();
     let only = Allowed { only: vec!["cubic".into(), "parameter".into()], ..Allowed::default() };
     let mut seen = 0;
     for cause in library(problem, nominal, start, vec![], &only, &()) {
-        // so little that the machine answers as a line
-        let size = 1e-8;
-        let job = problem.job(&start.with(&cause, vec![size]), Grain::Coarse).unwrap();
-        let moved = problem.run(&[job], Span::Fit).swap_remove(0).unwrap();
-        let column: Vec<f64> = problem
-            .residual(&moved, Part::Fit)
-            .iter()
-            .zip(&residual)
-            .map(|(a, b)| (b - a) / size)
-            .collect();
+        let column = column(&prepared, &cause, &residual);
         let (sums, place): (Vec<f64>, _) = match &cause.wire {
             Wire::Parameter(p) => {
                 let own = &adjoint.parameters.as_ref().unwrap()[0];
@@ -116,13 +124,11 @@ fn several_laws_explain_their_score_statistic() {
     let prepared = Prepared::new(&system, &[record()], 0.7).unwrap();
     let (problem, nominal) = (&prepared.problem, &prepared.nominal);
     let start: &Model = &prepared.start;
-    let y = problem.simulate(start, Grain::Coarse).unwrap();
-    let residual = problem.residual(&y, Part::Fit);
+    let residual = left(&prepared);
     let about = About { model: start, residual: &residual, basis: &[] };
     let adjoint = Adjoint::new(problem, &about, Extent { signs: 600, ..EXTENT }, &()).unwrap();
     let only = Allowed { only: vec!["cubic".into(), "linear".into()], ..Allowed::default() };
     let all = library(problem, nominal, start, vec![], &only, &());
-    let size = 1e-8;
     let here = all
         .iter()
         .filter(|cause| cause.into == "u" && matches!(cause.of.as_deref(), Some("x" | "v")));
@@ -130,10 +136,7 @@ fn several_laws_explain_their_score_statistic() {
     for cause in here {
         let Wire::Stage(route) = &cause.wire else { continue };
         let power = if cause.effect == "cubic" { 3 } else { 1 };
-        let job = problem.job(&start.with(cause, vec![size]), Grain::Coarse).unwrap();
-        let moved = problem.run(&[job], Span::Fit).swap_remove(0).unwrap();
-        let moved = problem.residual(&moved, Part::Fit);
-        columns.push(moved.iter().zip(&residual).map(|(a, b)| (b - a) / size).collect());
+        columns.push(column(&prepared, cause, &residual));
         terms.push(adjoint.seen[route.source].iter().map(|z| z.powi(power)).collect());
     }
     let count = columns.len();

@@ -9,7 +9,6 @@ use crate::findings::note::Note;
 use crate::fit::affordable::affordable_forces;
 use crate::fit::finished::Finished;
 use crate::fit::problem::Grain;
-
 use crate::prepare::prepared::Prepared;
 use crate::watch::Watch;
 

@@ -5,6 +5,7 @@ use crate::likelihood::{Explanation, NoiseModel, Predictor};
 use super::compete::{Rivals, extended, left, predictor, step};
 use super::conversion::{carried_over, finished};
 use crate::candidates::library::Allowed;
+use crate::criteria::LEAVES;
 use crate::error::DiagnoseError;
 use crate::fit::finished::Finished;
 use crate::fit::problem::Part;
@@ -21,8 +22,6 @@ const WHITE: f64 = 3.0;
 const CLEARLY: f64 = 5.0;
 /// Share of the mean square that a free run leaves for which an answer has to account by itself.
 const ACCOUNTED: f64 = 0.95;
-/// How much larger than without them causes may leave a free run.
-const WORSE: f64 = 1.05;
 
 /// An answer and what it was weighed against.
 type Answer = (Finished, Option<Finished>);
@@ -188,7 +187,7 @@ fn by_innovations(
     // a likelihood is exact, a model is not: what it predicts must not get worse
     let before = left(problem, &prepared.start)?;
     let after = left(problem, &answer.fitted.model)?;
-    (after <= WORSE * before).then_some(answer)
+    ((after / before).powi(2) <= LEAVES).then_some(answer)
 }
 
 /// Score that the innovations of an explanation follow from inputs before them, which those of the true

@@ -7,17 +7,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use crate::candidates::candidate::Candidate;
-use crate::criteria::AS_GOOD;
+use crate::criteria::{AS_GOOD, LEAVES};
 use crate::evidence::Whitener;
 use crate::fit::problem::Model;
+use crate::statistics::rms;
 
 /// Rise of a logarithm of a posterior that makes one fit better than another of the same causes.
 const BETTER: f64 = 0.01;
-
-/// What a model may leave, in units of what the one without causes leaves. That is error and noise, so
-/// noise alone is less: the prior of its variance ends there, whatever likelihood a larger one would have
-/// (a disturbance with a pole near 1 forgives any drift); a tenth is left to chance.
-const LEAVES: f64 = 1.1;
 
 /// A fitted model.
 #[derive(Debug, Clone)]
@@ -49,6 +45,11 @@ impl Fit {
     /// Causes beside the limits that were known before.
     pub fn causes(&self) -> usize {
         self.model.added.len() - self.model.known()
+    }
+
+    /// Whether it has no causes and its parameters are held.
+    pub fn is_nothing(&self) -> bool {
+        !self.free && self.causes() == 0
     }
 
     /// How many places it has a law at.
@@ -89,10 +90,6 @@ impl SetKey {
     }
 }
 
-fn mean_square(residual: &[f64]) -> f64 {
-    residual.iter().map(|r| r * r).sum::<f64>() / residual.len().max(1) as f64
-}
-
 /// A cause's name in keys.
 pub(crate) fn name(cause: &Candidate) -> String {
     let also = if cause.also_into.is_empty() { "" } else { "+" };
@@ -104,17 +101,15 @@ pub(crate) fn name(cause: &Candidate) -> String {
 #[derive(Debug, Default)]
 pub(crate) struct Beam {
     fits: BTreeMap<SetKey, Fit>,
-    /// Mean square that the model without causes leaves, parameters held.
-    nothing: Option<f64>,
 }
 
 impl Beam {
     /// Takes a fit in; whether it is better than what was there.
     pub fn keep(&mut self, fit: Fit) -> bool {
         let key = fit.key();
-        if fit.causes() == 0 && !fit.free {
-            self.nothing = Some(mean_square(&fit.residual));
-        } else if self.nothing.is_some_and(|most| mean_square(&fit.residual) > LEAVES * most) {
+        let leaves = |fit: &Fit| rms(&fit.residual).powi(2);
+        let is_nothing = fit.is_nothing();
+        if !is_nothing && self.nothing().is_some_and(|none| leaves(&fit) > LEAVES * leaves(none)) {
             return false;
         }
         let known = self.fits.get(&key).map(Fit::posterior);
@@ -123,6 +118,11 @@ impl Beam {
             self.fits.insert(key, fit);
         }
         better
+    }
+
+    /// The fit without causes, parameters held.
+    fn nothing(&self) -> Option<&Fit> {
+        self.fits().find(|fit| fit.is_nothing())
     }
 
     /// The fit of a set.
@@ -212,5 +212,34 @@ mod tests {
         assert!(!beam.headline().unwrap().free);
         beam.keep(fit(true, 9.0));
         assert!(beam.headline().unwrap().free);
+    }
+
+    #[test]
+    fn what_leaves_more_than_nothing_explains_nothing() {
+        let mut beam = Beam::default();
+        let leaves = |names: &[&str], size: f64| Fit {
+            free: false,
+            likelihood: 9.0,
+            ..fit_of(names, vec![size; 10])
+        };
+        // before anything is known of nothing there is no bound
+        assert!(beam.keep(leaves(&["early"], 3.0)));
+        beam.keep(leaves(&[], 1.0));
+        assert!(beam.keep(leaves(&["less"], 0.5)));
+        assert!(beam.keep(leaves(&["chance"], 1.04)));
+        assert!(!beam.keep(leaves(&["more"], 1.06)));
+    }
+
+    #[test]
+    fn a_cause_that_is_ruled_out_takes_its_sets_with_it() {
+        let mut beam = Beam::default();
+        for names in [&[][..], &["a"], &["a", "b"], &["b"]] {
+            beam.keep(fit_of(names, vec![1.0; 10]));
+        }
+        let gone = fit_of(&["a"], vec![]).model.added[0].cause.clone();
+        beam.rule_out(&gone);
+        let left: Vec<usize> = beam.fits().map(Fit::causes).collect();
+        assert_eq!(left, [0, 1]);
+        assert!(!beam.fits().any(|fit| fit.model.added.iter().any(|a| a.cause.same_cause(&gone))));
     }
 }

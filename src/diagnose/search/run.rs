@@ -201,7 +201,7 @@ fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
 fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched> {
     study.concludes = true;
     let (headline, withdrawn) = vetoed(&mut study)?;
-    let nothing = study.beam.probability(|fit| !fit.free && fit.causes() == 0);
+    let nothing = study.beam.probability(Fit::is_nothing);
     let found = Found {
         slots: slots(study.problem, &study.beam, &headline),
         model: headline.model.clone(),

@@ -1,17 +1,17 @@
 //! The veto of data that were not fitted: a likelihood is exact, the model is not.
 //!
-//! A cause goes where the part of the record that chooses speaks against it,
-//! ln p(y | with) - ln p(y | without) <= -min(REFUTED, its log odds by the part that was fitted), both with
-//! the numbers of the laws that were fitted there (prequential: Dawid, JRSS A 147, 1984). The disturbance is a nuisance of either model and is
-//! estimated where it is judged: what a model still lacks may be larger here than where it was fitted,
-//! and the noise of that part would count it against a cause that has nothing to do with it.
+//! A cause goes where the part of the record that chooses speaks against it (`likelihood::refutes`),
+//! ln p(y | with) - ln p(y | without), both with the numbers of the laws that were fitted elsewhere
+//! (prequential: Dawid, JRSS A 147, 1984). The disturbance is a nuisance of either model and is estimated
+//! where it is judged: what a model still lacks may be larger here than where it was fitted, and the noise
+//! of that part would count it against a cause that has nothing to do with it.
 
 use super::beam::Fit;
 use super::fits::Wish;
 use super::study::Study;
-use crate::criteria::REFUTED;
 use crate::evidence::Stretches;
 use crate::fit::problem::{Added, Grain, Part};
+use crate::likelihood::refutes;
 
 /// Iterations of a fit without a cause.
 const ITERATIONS: usize = 8;
@@ -52,16 +52,19 @@ fn refuted(study: &mut Study<'_, '_>, fit: &Fit, held: &Stretches) -> Option<usi
     let gains = densities.map(|bare| bare.map_or(f64::INFINITY, |bare| with - bare));
     let (at, gain) = gains.enumerate().min_by(|a, b| a.1.total_cmp(&b.1))?;
     let odds = fit.posterior() - without[at].posterior();
-    (gain <= -REFUTED.min(odds.max(0.0))).then_some(all[at])
+    refutes(gain, odds).then_some(all[at])
 }
 
 /// The fit without one of its causes.
 fn less(study: &mut Study<'_, '_>, fit: &Fit, index: usize) -> Option<Fit> {
     let model = fit.model.without(index);
     let key = Fit { model: model.clone(), ..fit.clone() }.key();
-    if study.beam.get(&key).is_none() {
-        let wish = Wish { model, noise: fit.noise.clone() };
-        study.fit_and_keep(fit.free, &[wish], ITERATIONS);
+    if let Some(known) = study.beam.get(&key) {
+        return Some(known.clone());
     }
-    study.beam.get(&key).cloned()
+    // a model that is no explanation by itself is still what the cause is judged against
+    let wish = Wish { model, noise: fit.noise.clone() };
+    let rest = study.fit(fit.free, &[wish], ITERATIONS).pop()?;
+    study.beam.keep(rest.clone());
+    Some(rest)
 }
