@@ -11,6 +11,7 @@ mod hidden_effect;
 mod network;
 mod noise_levels;
 mod nulls;
+mod onset;
 mod other_plants;
 mod plan;
 mod report;

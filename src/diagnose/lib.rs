@@ -23,6 +23,7 @@ mod innovations;
 mod memory;
 mod mended;
 mod names;
+mod onset;
 mod plan;
 mod prepare;
 mod run;

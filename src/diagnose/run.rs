@@ -152,14 +152,28 @@ impl Diagnosis<'_> {
             return Ok(Looked { searched, faults, notes: vec![], single_records: vec![] });
         }
         let (records, test) = (mended, of_test);
-        let searched = match clock {
-            None => self.search(&records, test.as_ref(), self.max_causes, watch)?,
-            Some(clock) => {
-                let (searched, is_clock) = self.clocked(&records, test.as_ref(), &clock, watch)?;
-                faults.extend(is_clock.then_some(clock));
-                searched
-            }
+        let begun = match &records[..] {
+            [record] => self.begun(record, test.as_ref(), watch)?,
+            _ => None,
         };
+        let begun = match begun {
+            Some(begun) if begun.is_certain(self.system) => {
+                let searched = begun.told();
+                return Ok(Looked { searched, faults, notes: vec![], single_records: vec![] });
+            }
+            begun => begun,
+        };
+        let (searched, is_clock) = match &clock {
+            None => (self.search(&records, test.as_ref(), self.max_causes, watch)?, false),
+            Some(clock) => self.clocked(&records, test.as_ref(), clock, watch)?,
+        };
+        let searched = match begun {
+            Some(begun) if !is_clock && begun.is_rather_than(&searched, self.system) => {
+                begun.told()
+            }
+            _ => searched,
+        };
+        faults.extend(clock.filter(|_| is_clock));
         let single_records = self.single_records(&searched, &records, watch)?;
         let searched = match single_records.is_empty() {
             true => searched,

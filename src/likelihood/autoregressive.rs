@@ -25,7 +25,7 @@ pub struct Autoregression {
 impl Autoregression {
     /// The process of a series whose stretches are runs of finite values; the order is chosen by
     /// Schwarz's criterion, at most 16.
-    pub(crate) fn of(series: &[f64]) -> Self {
+    pub fn of(series: &[f64]) -> Self {
         let count = series.iter().filter(|e| e.is_finite()).count().max(1) as f64;
         let most = MOST.min((count / 10.0) as usize);
         let predictors: Vec<(Vec<f64>, f64)> = levinson(&covariances(series, most))
@@ -86,7 +86,7 @@ impl Autoregression {
     }
 
     /// Log density of a series.
-    pub(crate) fn log_likelihood(&self, series: &[f64]) -> f64 {
+    pub fn log_likelihood(&self, series: &[f64]) -> f64 {
         let (white, logs) = self.whitened(series);
         let finite = || white.iter().filter(|e| e.is_finite());
         let square: f64 = finite().map(|e| e * e).sum();

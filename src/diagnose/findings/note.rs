@@ -14,6 +14,13 @@ pub enum Note {
         /// Stretches used.
         count: usize,
     },
+    /// What is named begins within the record.
+    Begins {
+        /// When, by the record's clock in s.
+        time: f64,
+        /// Samples from then on.
+        samples: usize,
+    },
     /// The records are longer than memory holds: stretches of them were looked at.
     Thinned {
         /// Samples looked at.

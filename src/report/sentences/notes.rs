@@ -31,6 +31,11 @@ pub fn note(note: &Note) -> String {
              were not checked.",
             number(*seconds, None)
         ),
+        Note::Begins { time, samples } => format!(
+            "Until {} the model as it is describes the record. All figures are of the {samples} samples \
+             from then on, and so is the extended model.",
+            with_unit(*time, "s")
+        ),
         Note::Thinned { samples, of, stretches, memory, whole } => format!(
             "Of {of} samples {samples} were looked at, in {stretches} stretches spread evenly over the \
              records, each as a record of its own: {memory} of memory were allowed, and all samples \

@@ -1,0 +1,190 @@
+//! When an extended model takes over from the model as it was: profile likelihood of the moment.
+//!
+//! ```text
+//! p(k | y) ~ p(y | the model until k, then the extended one from the state that the model has at k)
+//! ```
+//!
+//! The errors of that run are autoregressive, with the numbers that the most probable moment leaves. The
+//! time is the mean of the posterior under a flat prior, its standard error the root of the variance.
+//! Source: Basseville and Nikiforov, "Detection of Abrupt Changes", 1993, section 7.2.
+
+use std::ops::Range;
+
+use crate::data::Record;
+use crate::evaluate::{EvaluateError, Init, Run};
+use crate::findings::cause::Onset;
+use crate::likelihood::Autoregression;
+use crate::statistics::rms;
+use crate::system::{Drive, Lane, Origin, System};
+
+/// Share of a record on either side of a guess that the moment is looked for in.
+const AROUND: f64 = 0.25;
+/// Moments of a round over the range, and of one about the best of it.
+const MOMENTS: usize = 48;
+/// Samples after the range that are compared, at most.
+const AFTER: usize = 4000;
+/// Fall of the log likelihood beyond which moments have no part in the posterior.
+const FAR: f64 = 12.0;
+
+/// A moment, and the sample that it falls on.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment {
+    pub sample: usize,
+    pub onset: Onset,
+}
+
+/// When `after` takes over from `before` in a record of one segment, near a guess; `None` where neither can
+/// be followed.
+pub(super) fn moment(
+    (before, after): (&System, &System),
+    record: &Record,
+    guess: usize,
+) -> Result<Option<Moment>, EvaluateError> {
+    let n = record.len();
+    let reach = ((AROUND * n as f64) as usize).max(1);
+    let range = guess.saturating_sub(reach).max(1)..(guess + reach).min(n - 1);
+    let Some(runs) = Runs::new(before, after, record, range.clone())? else { return Ok(None) };
+    let mut moments = grid(&range, MOMENTS);
+    let Some(errors) = runs.least(&moments) else { return Ok(None) };
+    let noise: Vec<Autoregression> = errors.iter().map(|e| Autoregression::of(e)).collect();
+    // over the range, then ever finer about the best as long as that leaves samples out
+    let mut known: Vec<(usize, f64)> = vec![];
+    loop {
+        let step = moments.windows(2).map(|two| two[1] - two[0]).max().unwrap_or(1);
+        moments.retain(|k| known.iter().all(|(own, _)| own != k));
+        let likely = |&k: &usize| Some((k, runs.log_likelihood(k, &noise)?));
+        known.extend(moments.iter().filter_map(likely));
+        known.sort_by_key(|(k, _)| *k);
+        let top = known.iter().map(|(_, l)| *l).fold(f64::NEG_INFINITY, f64::max);
+        let near: Vec<usize> =
+            known.iter().filter(|(_, l)| *l > top - FAR).map(|(k, _)| *k).collect();
+        let (Some(&first), Some(&last)) = (near.first(), near.last()) else { return Ok(None) };
+        let inner =
+            first.saturating_sub(step).max(range.start)..(last + step).min(range.end - 1) + 1;
+        if step <= 1 || near.len() >= MOMENTS / 2 {
+            return Ok(Some(posterior(record, &known, top)));
+        }
+        moments = grid(&inner, MOMENTS);
+    }
+}
+
+/// Mean and standard deviation of the moment, and the most probable one.
+fn posterior(record: &Record, known: &[(usize, f64)], top: f64) -> Moment {
+    // a moment stands for the samples nearer to it than to the others
+    let weight = |i: usize| {
+        let left = if i > 0 { known[i].0 - known[i - 1].0 } else { 0 };
+        let right = known.get(i + 1).map_or(0, |next| next.0 - known[i].0);
+        (known[i].1 - top).exp() * (left + right).max(1) as f64
+    };
+    let weights: Vec<f64> = (0..known.len()).map(weight).collect();
+    let sum: f64 = weights.iter().sum();
+    let average = |of: &dyn Fn(f64) -> f64| {
+        let terms = known.iter().zip(&weights).map(|((k, _), w)| w * of(*k as f64));
+        terms.sum::<f64>() / sum
+    };
+    let mean = average(&|k| k);
+    let variance = average(&|k| (k - mean).powi(2));
+    // within a sample any moment is as probable
+    let spread = (variance + 1.0 / 12.0).sqrt() * record.sampling_time;
+    let at = known.iter().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(k, _)| *k);
+    let time = record.start + mean * record.sampling_time;
+    Moment { sample: at, onset: Onset { time, std_error: Some(spread) } }
+}
+
+/// So many samples of a range, spread evenly.
+fn grid(range: &Range<usize>, count: usize) -> Vec<usize> {
+    let last = range.len().saturating_sub(1);
+    let count = count.min(range.len()).max(1);
+    let at = |i: usize| range.start + i * last / (count - 1).max(1);
+    let mut all: Vec<usize> = (0..count).map(at).collect();
+    all.dedup();
+    all
+}
+
+/// Both models along a record.
+struct Runs<'a> {
+    after: Run<'a>,
+    /// Outputs of the model as it was, and its states, sample by sample.
+    outputs: Vec<Vec<f64>>,
+    states: Vec<Vec<f64>>,
+    /// Indices of the outputs that were measured.
+    measured: Vec<usize>,
+    /// Samples that are compared.
+    compared: Range<usize>,
+}
+
+impl<'a> Runs<'a> {
+    fn new(
+        before: &'a System,
+        after: &'a System,
+        record: &Record,
+        range: Range<usize>,
+    ) -> Result<Option<Self>, EvaluateError> {
+        let own = Run::new(before, record)?;
+        let starts = own.starts(own.init_samples(Init::Forgotten));
+        let lane = Lane {
+            theta: own.plan.signals.theta(),
+            effect_values: own.plan.effect_values(),
+            starts,
+            ..Lane::default()
+        };
+        let mut track = own.system.run_seen(&own.plan, &own.drive, &lane);
+        if !track.is_finite() {
+            return Ok(None);
+        }
+        let entries: Option<Vec<usize>> =
+            (0..own.plan.sizes.x).map(|i| own.plan.sources.at(Origin::State(i))).collect();
+        let Some(entries) = entries else { return Ok(None) };
+        let states = entries.into_iter().map(|e| std::mem::take(&mut track.seen[e])).collect();
+        let after = Run::new(after, record)?;
+        let measured = (0..track.y.len()).filter(|&o| after.measured[o].is_some()).collect();
+        let compared = range.start..(range.end + AFTER).min(record.len());
+        Ok(Some(Self { after, outputs: track.y, states, measured, compared }))
+    }
+
+    /// What is left of every measured output when the extended model takes over at a sample.
+    fn errors(&self, k: usize) -> Option<Vec<Vec<f64>>> {
+        let run = &self.after;
+        let end = self.compared.end;
+        let drive = Drive {
+            inputs: run.drive.inputs.iter().map(|u| u[..end].to_vec()).collect(),
+            segments: std::iter::once(k..end).collect(),
+            clocks: run.drive.clocks.clone(),
+        };
+        let lane = Lane {
+            theta: run.plan.signals.theta(),
+            effect_values: run.plan.effect_values(),
+            starts: vec![self.states.iter().map(|x| x[k]).collect()],
+            ..Lane::default()
+        };
+        let track = run.system.run(&run.plan, &drive, &[lane]).swap_remove(0);
+        if !track.is_finite() {
+            return None;
+        }
+        let error = |&o: &usize| {
+            let y = run.measured[o].as_ref()?;
+            let simulated = |t: usize| if t < k { self.outputs[o][t] } else { track.y[o][t] };
+            Some(self.compared.clone().map(|t| y[t] - simulated(t)).collect())
+        };
+        self.measured.iter().map(error).collect()
+    }
+
+    /// What the moment leaves that leaves least, were its noise white and of any level.
+    fn least(&self, moments: &[usize]) -> Option<Vec<Vec<f64>>> {
+        let of = |&k: &usize| {
+            let errors = self.errors(k)?;
+            let known = |e: &[f64]| e.iter().copied().filter(|e| e.is_finite()).collect::<Vec<_>>();
+            let logs: f64 =
+                errors.iter().map(|e| known(e).len() as f64 * rms(&known(e)).ln()).sum();
+            (!logs.is_nan()).then_some((logs, errors))
+        };
+        moments.iter().filter_map(of).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, errors)| errors)
+    }
+
+    /// Log likelihood of a moment under the noise of every measured output.
+    fn log_likelihood(&self, k: usize, noise: &[Autoregression]) -> Option<f64> {
+        let errors = self.errors(k)?;
+        let value: f64 = errors.iter().zip(noise).map(|(e, own)| own.log_likelihood(e)).sum();
+        value.is_finite().then_some(value)
+    }
+}
