@@ -158,7 +158,7 @@ impl Diagnosis<'_> {
         };
         let begun = match begun {
             Some(begun) if begun.is_certain(self.system) => {
-                let searched = begun.told();
+                let searched = begun.dated();
                 return Ok(Looked { searched, faults, notes: vec![], single_records: vec![] });
             }
             begun => begun,
@@ -169,7 +169,7 @@ impl Diagnosis<'_> {
         };
         let searched = match begun {
             Some(begun) if !is_clock && begun.is_rather_than(&searched, self.system) => {
-                begun.told()
+                begun.dated()
             }
             _ => searched,
         };

@@ -21,7 +21,7 @@ pub enum Note {
         /// Samples from then on.
         samples: usize,
     },
-    /// The records are longer than memory holds: stretches of them were looked at.
+    /// The records are longer than memory holds, or than is worth the time: stretches of them were looked at.
     Thinned {
         /// Samples looked at.
         samples: usize,
@@ -29,10 +29,8 @@ pub enum Note {
         of: usize,
         /// Stretches.
         stretches: usize,
-        /// Memory that was allowed.
-        memory: Memory,
-        /// Memory that all samples would take, about.
-        whole: Memory,
+        /// Memory that was allowed, and what all samples would take, about; `None` where memory would do.
+        memory: Option<(Memory, Memory)>,
     },
     /// There are too few samples for all parameters to move at once.
     TooManyParameters {

@@ -17,8 +17,8 @@ use crate::likelihood::Autoregression;
 use crate::statistics::rms;
 use crate::system::{Drive, Lane, Origin, System};
 
-/// Share of a record on either side of a guess that the moment is looked for in.
-const AROUND: f64 = 0.25;
+/// Share of a record on either side of a guess that the moment is looked for in, and samples at most.
+const AROUND: (f64, usize) = (0.25, 8000);
 /// Moments of a round over the range, and of one about the best of it.
 const MOMENTS: usize = 48;
 /// Samples after the range that are compared, at most.
@@ -41,7 +41,7 @@ pub(super) fn moment(
     guess: usize,
 ) -> Result<Option<Moment>, EvaluateError> {
     let n = record.len();
-    let reach = ((AROUND * n as f64) as usize).max(1);
+    let reach = ((AROUND.0 * n as f64) as usize).clamp(1, AROUND.1);
     let range = guess.saturating_sub(reach).max(1)..(guess + reach).min(n - 1);
     let Some(runs) = Runs::new(before, after, record, range.clone())? else { return Ok(None) };
     let mut moments = grid(&range, MOMENTS);
@@ -61,7 +61,7 @@ pub(super) fn moment(
         let (Some(&first), Some(&last)) = (near.first(), near.last()) else { return Ok(None) };
         let inner =
             first.saturating_sub(step).max(range.start)..(last + step).min(range.end - 1) + 1;
-        if step <= 1 || near.len() >= MOMENTS / 2 {
+        if step <= 1 || moments.is_empty() || near.len() >= MOMENTS / 2 {
             return Ok(Some(posterior(record, &known, top)));
         }
         moments = grid(&inner, MOMENTS);
@@ -101,16 +101,22 @@ fn grid(range: &Range<usize>, count: usize) -> Vec<usize> {
     all
 }
 
-/// Both models along a record.
+/// Both models along the samples of a record that are compared.
 struct Runs<'a> {
     after: Run<'a>,
     /// Outputs of the model as it was, and its states, sample by sample.
     outputs: Vec<Vec<f64>>,
     states: Vec<Vec<f64>>,
-    /// Indices of the outputs that were measured.
+    /// Outputs that were measured.
     measured: Vec<usize>,
-    /// Samples that are compared.
-    compared: Range<usize>,
+    /// The first sample that is compared.
+    first: usize,
+}
+
+/// The free run of a model as its file has it.
+fn lane(run: &Run<'_>, start: Vec<f64>) -> Lane {
+    let (theta, effect_values) = (run.plan.signals.theta(), run.plan.effect_values());
+    Lane { theta, effect_values, starts: vec![start], ..Lane::default() }
 }
 
 impl<'a> Runs<'a> {
@@ -120,43 +126,43 @@ impl<'a> Runs<'a> {
         record: &Record,
         range: Range<usize>,
     ) -> Result<Option<Self>, EvaluateError> {
-        let own = Run::new(before, record)?;
-        let starts = own.starts(own.init_samples(Init::Forgotten));
-        let lane = Lane {
-            theta: own.plan.signals.theta(),
-            effect_values: own.plan.effect_values(),
-            starts,
-            ..Lane::default()
-        };
-        let mut track = own.system.run_seen(&own.plan, &own.drive, &lane);
-        if !track.is_finite() {
+        let whole = Run::new(before, record)?;
+        let Some(start) = whole.starts(whole.init_samples(Init::Forgotten)).pop() else {
             return Ok(None);
-        }
-        let entries: Option<Vec<usize>> =
-            (0..own.plan.sizes.x).map(|i| own.plan.sources.at(Origin::State(i))).collect();
-        let Some(entries) = entries else { return Ok(None) };
-        let states = entries.into_iter().map(|e| std::mem::take(&mut track.seen[e])).collect();
-        let after = Run::new(after, record)?;
+        };
+        let until = |end: usize| Drive {
+            inputs: whole.drive.inputs.iter().map(|u| u[..end].to_vec()).collect(),
+            segments: std::iter::once(0..end).collect(),
+            clocks: whole.drive.clocks.clone(),
+        };
+        let lead = whole.system.run(&whole.plan, &until(range.start), &[lane(&whole, start)]);
+        let compared = record.slice(range.start..range.end + AFTER);
+        let own = Run::new(before, &compared)?;
+        let lane = lane(&own, lead.into_iter().next().map_or(vec![], |lead| lead.last));
+        let mut track = own.system.run_seen(&own.plan, &own.drive, &lane);
+        let states = (0..own.plan.sizes.x).map(|i| own.plan.sources.at(Origin::State(i)));
+        let Some(states) = states.collect::<Option<Vec<usize>>>().filter(|_| track.is_finite())
+        else {
+            return Ok(None);
+        };
+        let states = states.into_iter().map(|entry| std::mem::take(&mut track.seen[entry]));
+        let after = Run::new(after, &compared)?;
         let measured = (0..track.y.len()).filter(|&o| after.measured[o].is_some()).collect();
-        let compared = range.start..(range.end + AFTER).min(record.len());
-        Ok(Some(Self { after, outputs: track.y, states, measured, compared }))
+        Ok(Some(Self {
+            after,
+            outputs: track.y,
+            states: states.collect(),
+            measured,
+            first: range.start,
+        }))
     }
 
     /// What is left of every measured output when the extended model takes over at a sample.
     fn errors(&self, k: usize) -> Option<Vec<Vec<f64>>> {
-        let run = &self.after;
-        let end = self.compared.end;
-        let drive = Drive {
-            inputs: run.drive.inputs.iter().map(|u| u[..end].to_vec()).collect(),
-            segments: std::iter::once(k..end).collect(),
-            clocks: run.drive.clocks.clone(),
-        };
-        let lane = Lane {
-            theta: run.plan.signals.theta(),
-            effect_values: run.plan.effect_values(),
-            starts: vec![self.states.iter().map(|x| x[k]).collect()],
-            ..Lane::default()
-        };
+        let (run, k) = (&self.after, k - self.first);
+        let n = run.drive.len();
+        let drive = Drive { segments: std::iter::once(k..n).collect(), ..run.drive.clone() };
+        let lane = lane(run, self.states.iter().map(|x| x[k]).collect());
         let track = run.system.run(&run.plan, &drive, &[lane]).swap_remove(0);
         if !track.is_finite() {
             return None;
@@ -164,7 +170,7 @@ impl<'a> Runs<'a> {
         let error = |&o: &usize| {
             let y = run.measured[o].as_ref()?;
             let simulated = |t: usize| if t < k { self.outputs[o][t] } else { track.y[o][t] };
-            Some(self.compared.clone().map(|t| y[t] - simulated(t)).collect())
+            Some((0..n).map(|t| y[t] - simulated(t)).collect())
         };
         self.measured.iter().map(error).collect()
     }

@@ -105,7 +105,7 @@ impl Begun {
     }
 
     /// What was searched, its causes with the moment at which they begin.
-    pub fn told(self) -> Searched {
+    pub fn dated(self) -> Searched {
         let Self { mut searched, moment, of, .. } = self;
         for cause in &mut searched.causes {
             match &mut cause.rows {

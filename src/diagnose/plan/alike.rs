@@ -3,6 +3,7 @@
 use super::{Outlook, Planner};
 use crate::data::Record;
 use crate::findings::finding::Finding;
+use crate::prepare::windows::windows;
 use crate::system::System;
 use crate::watch::Watch;
 
@@ -26,6 +27,9 @@ impl Planner<'_> {
         }
         effects.sort();
         effects.dedup();
+        // what a search looked at tells as much
+        let windows = windows(records);
+        let records = windows.as_deref().unwrap_or(records);
         Planner::of(system).only(&effects).run(records, watch).ok()
     }
 }

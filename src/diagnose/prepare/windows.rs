@@ -10,6 +10,8 @@ use crate::system::System;
 
 /// Samples that a search looks at, at most.
 const MOST: usize = 9000;
+/// Samples that are fitted and tested at most: errors fall with the root of their number, time grows with it.
+const WORTH: usize = 100_000;
 /// Stretches that are taken of a longer record.
 const WINDOWS: usize = 3;
 /// Numbers that a diagnosis holds for a sample at most, when it fits all of them: of an input (record,
@@ -47,7 +49,7 @@ pub(crate) fn windows(records: &[Record]) -> Option<Vec<Record>> {
     Some(spread.into_iter().map(|(r, range)| records[r].slice(range)).collect())
 }
 
-/// Stretches of records that memory does not hold whole, each of them a record of its own.
+/// Stretches of records that are too long to be fitted whole, each of them a record of its own.
 pub(crate) struct Thinned {
     pub records: Vec<Record>,
     pub test: Option<Record>,
@@ -56,7 +58,7 @@ pub(crate) struct Thinned {
     rows: Vec<Range<usize>>,
 }
 
-/// The stretches that a budget holds of some records; `None` where it holds all of them.
+/// The stretches of some records that are worth their time and that a budget holds; `None` where that is all of them.
 pub(crate) fn thinned(
     system: &System,
     records: &[Record],
@@ -73,7 +75,8 @@ pub(crate) fn thinned(
     let taken: usize = all().map(|r| 8 * r.len() * r.signals().count()).sum();
     let room = memory.part(1).saturating_sub(taken) / 2;
     // below what a search looks at nothing is gained
-    let most = (room / each.max(1)).max(MOST);
+    let held = (room / each.max(1)).max(MOST);
+    let most = held.min(WORTH);
     if total <= most {
         return None;
     }
@@ -97,8 +100,7 @@ pub(crate) fn thinned(
             samples: spread.iter().map(|(_, range)| range.len()).sum(),
             of: records.iter().map(Record::len).sum(),
             stretches: spread.len(),
-            memory,
-            whole: Memory::of((taken + 2 * each * total) as u64),
+            memory: (held < WORTH).then(|| (memory, Memory::of((taken + 2 * each * total) as u64))),
         },
         test,
     })
@@ -142,9 +144,17 @@ mod tests {
     }
 
     #[test]
-    fn what_memory_holds_stays_whole() {
+    fn what_memory_holds_and_is_worth_its_time_stays_whole() {
         let all = [record(100_000)];
         assert!(thinned(&system(), &all, None, Memory::of(1 << 30)).is_none());
+    }
+
+    #[test]
+    fn millions_of_samples_are_not_worth_their_time() {
+        let thin = thinned(&system(), &[record(1_000_000)], None, Memory::of(8 << 30)).unwrap();
+        let samples: usize = thin.records.iter().map(Record::len).sum();
+        assert!((99_000..=WORTH).contains(&samples), "{samples}");
+        assert!(matches!(thin.note, Note::Thinned { memory: None, .. }));
     }
 
     #[test]

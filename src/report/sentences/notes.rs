@@ -36,11 +36,18 @@ pub fn note(note: &Note) -> String {
              from then on, and so is the extended model.",
             with_unit(*time, "s")
         ),
-        Note::Thinned { samples, of, stretches, memory, whole } => format!(
-            "Of {of} samples {samples} were looked at, in {stretches} stretches spread evenly over the \
-             records, each as a record of its own: {memory} of memory were allowed, and all samples \
-             would take about {whole} (--memory)."
-        ),
+        Note::Thinned { samples, of, stretches, memory } => {
+            let why = match memory {
+                Some((memory, whole)) => format!(
+                    "{memory} of memory were allowed, and all samples would take about {whole} (--memory)"
+                ),
+                None => "errors fall with the root of the number of samples, time grows with it".into(),
+            };
+            format!(
+                "Of {of} samples {samples} were looked at, in {stretches} stretches spread evenly over the \
+                 records, each as a record of its own: {why}."
+            )
+        }
         Note::TooManyParameters { parameters, samples } => format!(
             "{parameters} parameters were not let move together, only each by itself: {samples} samples are \
              fewer than five for each. Hold those that you are sure of (--fix, or `fixed` in the model file)."
