@@ -19,7 +19,7 @@ use crate::findings::cause::Cause;
 use crate::findings::hand_over::Searched;
 use crate::findings::note::Note;
 use crate::innovations::criterion;
-use crate::likelihood::refutes;
+use crate::likelihood::{Predictor, refutes};
 use crate::system::System;
 use crate::watch::Watch;
 
@@ -41,7 +41,7 @@ pub(crate) struct Begun {
 
 impl Diagnosis<'_> {
     /// What is named in the samples of a record from the moment on at which what the model leaves grows;
-    /// `None` where it does not, or nothing in the machine is named. The test record, or the part of this
+    /// `None` where it does not, nothing in the machine is named, or the model integrates. The test record, or the part of this
     /// one that serves as such, has no part in it.
     ///
     /// # Errors
@@ -61,6 +61,12 @@ impl Diagnosis<'_> {
             return Ok(None);
         }
         let Some(mut at) = rise(&left(self.system, &seen)?) else { return Ok(None) };
+        // the free run of a model that integrates drifts: what it leaves has no level
+        let head = seen.slice(0..COMPARED);
+        let predictor = Predictor::new(self.system, std::slice::from_ref(&head));
+        if !predictor.and_then(|own| own.forgets()).unwrap_or(false) {
+            return Ok(None);
+        }
         loop {
             let from = [record.slice(at..record.len())];
             let searched = self.search(&from, test, self.max_causes, watch)?;
