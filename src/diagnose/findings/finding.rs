@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::data::Record;
 use crate::evaluate::Metrics;
 use crate::findings::cause::{Alternative, Cause, MissingForce, Withdrawn};
 use crate::findings::closed_loop::ClosedLoop;
@@ -219,6 +220,16 @@ impl Finding {
     pub fn unit(&self, output: &str) -> &str {
         let of = self.series.outputs.iter().find(|(name, _)| name == output);
         of.map_or("", |(_, unit)| unit)
+    }
+
+    /// Samples of a record that the finding is about: those from the moment on at which its causes begin,
+    /// where they begin within it, else all.
+    pub fn samples(&self, record: &Record) -> usize {
+        let begins = |note: &Note| match note {
+            Note::Begins { samples, .. } => Some(*samples),
+            _ => None,
+        };
+        self.notes.iter().find_map(begins).unwrap_or(record.len()).min(record.len())
     }
 
     /// Causes in the machine, faults of the data apart.

@@ -12,6 +12,7 @@ mod scene;
 mod section;
 mod transplant;
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -47,7 +48,6 @@ struct Outcome {
 pub struct Rehearsal<'a> {
     diagnosis: &'a Diagnosis<'a>,
     finding: &'a Finding,
-    records: &'a [Record],
     stage: Stage<'a>,
     scenes: Vec<Scene>,
     seed: u64,
@@ -68,17 +68,24 @@ impl<'a> Rehearsal<'a> {
         records: &'a [Record],
         seed: u64,
     ) -> Result<Self, StudyError> {
+        // what begins within a record is rehearsed with the samples from then on
+        let from =
+            |record: &Record| record.slice(record.len() - finding.samples(record)..record.len());
+        let records = match records.iter().all(|record| finding.samples(record) == record.len()) {
+            true => Cow::Borrowed(records),
+            false => Cow::Owned(records.iter().map(from).collect()),
+        };
         let stage = Stage::new(&finding.extended, records)?;
         let scenes = stage.scenes(diagnosis, finding)?;
         let model = serde_json::to_string(&finding.extended)
             .map_err(|error| StudyError::merge(Path::new("the found model"), error))?;
         let mut print = Fingerprint::new().bytes(model.as_bytes()).bytes(&seed.to_le_bytes());
-        for signal in records.iter().flat_map(|r| r.inputs.iter().chain(&r.outputs)) {
+        for signal in stage.records.iter().flat_map(|r| r.inputs.iter().chain(&r.outputs)) {
             print = print.numbers(&signal.values);
         }
         let fingerprint = print.finish();
         let held = scene::asks_for_held(finding);
-        Ok(Self { diagnosis, finding, records, stage, scenes, seed, fingerprint, held })
+        Ok(Self { diagnosis, finding, stage, scenes, seed, fingerprint, held })
     }
 
     /// Which scene each of `count` rehearsals is of: shares of [`SHARES`], scenes of one kind alike.
@@ -156,7 +163,7 @@ impl<'a> Rehearsal<'a> {
     fn rehearse(&self, number: usize, scene: usize) -> Result<Vec<Vec<String>>, StudyError> {
         let signals = self.diagnosis.system().signals();
         let mut records = vec![];
-        for (k, record) in self.records.iter().enumerate() {
+        for (k, record) in self.stage.records.iter().enumerate() {
             let own = seed_of(apart(self.seed), 20 + k as u64, number as u64);
             let noise = self.stage.noise[k].draw(own);
             let mut record = record.clone();

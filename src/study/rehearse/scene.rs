@@ -1,6 +1,8 @@
 //! What is rehearsed: the machine with nothing hidden, as it was found, with each look-alike, and
 //! with each cause made smaller.
 
+use std::borrow::Cow;
+
 use super::noise::Resampled;
 use crate::StudyError;
 use crate::data::Record;
@@ -94,7 +96,7 @@ pub(super) fn asks_for_held(finding: &Finding) -> bool {
 
 /// The record along which everything is rehearsed.
 pub(super) struct Stage<'a> {
-    pub records: &'a [Record],
+    pub records: Cow<'a, [Record]>,
     /// Initial states per record, and per segment of it.
     starts: Vec<Vec<Vec<f64>>>,
     /// What the found model leaves, per record and output.
@@ -104,9 +106,9 @@ pub(super) struct Stage<'a> {
 }
 
 impl<'a> Stage<'a> {
-    pub(super) fn new(found: &System, records: &'a [Record]) -> Result<Self, StudyError> {
+    pub(super) fn new(found: &System, records: Cow<'a, [Record]>) -> Result<Self, StudyError> {
         let (mut starts, mut noise, mut all) = (vec![], vec![], vec![]);
-        for record in records {
+        for record in records.iter() {
             let run = Run::new(found, record)?;
             let own = run.starts(run.init_samples(Init::Forgotten));
             let y = run.track(own.clone()).y;

@@ -39,7 +39,7 @@ impl Stage<'_> {
         if other.effect != cause.effect {
             let only = Diagnosis::of(without).only(std::slice::from_ref(&other.effect));
             // a name that is no effect of the library cannot be asked for
-            let Ok(fitted) = only.max_causes(1).run(self.records, None, &()) else {
+            let Ok(fitted) = only.max_causes(1).run(&self.records, None, &()) else {
                 return Ok(None);
             };
             let names = named(&fitted);
