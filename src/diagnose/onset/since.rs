@@ -6,8 +6,9 @@
 //! ```
 //!
 //! ln p(H1 | y) - ln p(H0 | y) = l(H1) - l(H0) - (numbers of H1 - numbers of H0) / 2 ln n - ln n: the log
-//! likelihood of the samples before k and of those from k on, each with noise of its own, Schwarz's price of
-//! numbers (Annals of Statistics 6, 1978) and the choice of k among n.
+//! likelihood of the samples before k and of those from k on, each with noise of its own (under H0 it may
+//! be one noise too, which wanders through k), Schwarz's price of numbers (Annals of Statistics 6, 1978) and
+//! the choice of k among n.
 
 use super::moment::{Moment, moment};
 use super::rise::rise;
@@ -85,29 +86,38 @@ impl Diagnosis<'_> {
 }
 
 impl Begun {
-    /// Whether it leaves white noise, and the samples before its moment refute that it acted in them: what
-    /// acts in all samples can then do no better, and need not be searched.
+    /// Whether it leaves white noise, is more probable than noise of any kind, and the samples before its
+    /// moment refute that it acted in them: what acts in all samples can then do no better, and need not be
+    /// searched.
     pub fn is_certain(&self, system: &System) -> bool {
         let white = self.searched.left.values().all(|left| left.white);
-        let before = self.before();
-        let with = criterion(&self.searched.extended, &before).unwrap_or(f64::NEG_INFINITY);
-        let without = criterion(system, &before);
-        white
-            && without.is_some_and(|without| refutes(with + self.place() - without, f64::INFINITY))
+        white && self.replaces(system, 0.0, system) && {
+            let before = self.before();
+            let with = criterion(&self.searched.extended, &before).unwrap_or(f64::NEG_INFINITY);
+            let without = criterion(system, &before);
+            without.is_some_and(|without| refutes(with + self.place() - without, f64::INFINITY))
+        }
     }
 
     /// Whether it is more probable than what was named in all samples.
     pub fn is_rather_than(&self, searched: &Searched, system: &System) -> bool {
-        let named = machine(&searched.causes).next().is_some();
-        let always = if named { &searched.extended } else { system };
+        match machine(&searched.causes).next() {
+            Some(_) => self.replaces(&searched.extended, numbers(&searched.causes), system),
+            None => self.replaces(system, 0.0, system),
+        }
+    }
+
+    /// Whether it is more probable than a system that acts in all samples, of so many numbers. The noise of
+    /// that one may be of two levels, or wander through the moment.
+    fn replaces(&self, always: &System, of_always: f64, system: &System) -> bool {
         let (before, after) = (self.before(), self.after());
         let own = criterion(system, &before).zip(criterion(&self.searched.extended, &after));
         let Some((was, is)) = own else { return false };
         let all = |part: &Record| criterion(always, part).unwrap_or(f64::NEG_INFINITY);
-        let of_always = if named { numbers(&searched.causes) } else { 0.0 };
-        let more = numbers(&self.searched.causes) - of_always;
-        let price = self.place() * (1.0 + 0.5 * more);
-        refutes(all(&before) + all(&after) + price - was - is, f64::INFINITY)
+        let in_one = all(&self.around());
+        let always = in_one.max(all(&before) + all(&after));
+        let price = self.place() * (1.0 + 0.5 * (numbers(&self.searched.causes) - of_always));
+        refutes(always + price - was - is, f64::INFINITY)
     }
 
     /// What was searched, its causes with the moment at which they begin.
@@ -137,6 +147,11 @@ impl Begun {
     fn after(&self) -> Record {
         let at = self.moment.sample;
         self.seen.slice(at..at + COMPARED)
+    }
+
+    fn around(&self) -> Record {
+        let at = self.moment.sample;
+        self.seen.slice(at.saturating_sub(COMPARED)..at + COMPARED)
     }
 }
 
