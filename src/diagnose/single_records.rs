@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
+use super::findings::cause::in_the_machine;
 use super::findings::finding::{SingleRecord, Verdict};
 use super::findings::hand_over::Searched;
 use super::findings::per_record::InRecord;
@@ -33,7 +34,7 @@ impl Diagnosis<'_> {
         watch: &dyn Watch,
     ) -> Result<Vec<SingleRecord>, DiagnoseError> {
         let mut found = vec![];
-        let named = searched.causes.iter().any(|cause| !cause.is_data_fault());
+        let named = in_the_machine(&searched.causes).next().is_some();
         let differs = |said: &InRecord| said.shows == Some(false);
         let alike = !searched.causes.iter().flat_map(|c| c.records.iter().flatten()).any(differs);
         if records.len() < 2 || records.len() > RECORDS || named && alike {
@@ -66,7 +67,7 @@ impl Diagnosis<'_> {
             }
             let one = std::slice::from_ref(record);
             let own = self.search(one, None, self.max_causes, watch)?;
-            let first = own.causes.iter().find(|cause| !cause.is_data_fault());
+            let first = in_the_machine(&own.causes).next();
             let (Some(first), Verdict::CausesFound) = (first, own.verdict) else { continue };
             let with = runs(&own.extended);
             let others: f64 = of_bare.iter().sum::<f64>() - of_bare[i];

@@ -111,7 +111,8 @@ impl<'a> Run<'a> {
         drive
     }
 
-    pub(super) fn lane(&self, starts: Vec<Vec<f64>>) -> Lane {
+    /// The parameters of the system, from given initial states, one per segment.
+    pub fn lane(&self, starts: Vec<Vec<f64>>) -> Lane {
         Lane {
             theta: self.plan.signals.theta(),
             effect_values: self.plan.effect_values(),

@@ -258,6 +258,11 @@ impl Cause {
     }
 }
 
+/// Those of some causes that are in the machine, faults of the data apart.
+pub(crate) fn in_the_machine(causes: &[Cause]) -> impl Iterator<Item = &Cause> {
+    causes.iter().filter(|cause| !cause.is_data_fault())
+}
+
 /// A cause that the test record refutes: it was found, and the extended model does not have it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Withdrawn {

@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::data::Record;
 use crate::evaluate::Metrics;
-use crate::findings::cause::{Alternative, Cause, MissingForce, Withdrawn};
+use crate::findings::cause::{Alternative, Cause, MissingForce, Withdrawn, in_the_machine};
 use crate::findings::closed_loop::ClosedLoop;
 use crate::findings::distortion::Distortion;
 use crate::findings::error_band::Regime;
@@ -234,7 +234,7 @@ impl Finding {
 
     /// Causes in the machine, faults of the data apart.
     pub fn in_the_machine(&self) -> impl Iterator<Item = &Cause> {
-        self.causes.iter().filter(|cause| !cause.is_data_fault())
+        in_the_machine(&self.causes)
     }
 }
 

@@ -15,7 +15,7 @@ use crate::evaluate::{EvaluateError, Init, Run};
 use crate::findings::cause::Onset;
 use crate::likelihood::Autoregression;
 use crate::statistics::rms;
-use crate::system::{Drive, Lane, Origin, System};
+use crate::system::{Drive, Origin, System};
 
 /// Share of a record on either side of a guess that the moment is looked for in, and samples at most.
 const AROUND: (f64, usize) = (0.25, 8000);
@@ -25,6 +25,9 @@ const MOMENTS: usize = 48;
 const AFTER: usize = 4000;
 /// Fall of the log likelihood beyond which moments have no part in the posterior.
 const FAR: f64 = 12.0;
+
+/// What is left of every measured output, sample by sample.
+type Errors = Vec<Vec<f64>>;
 
 /// A moment, and the sample that it falls on.
 #[derive(Debug, Clone, Copy)]
@@ -45,26 +48,31 @@ pub(super) fn moment(
     let range = guess.saturating_sub(reach).max(1)..(guess + reach).min(n - 1);
     let Some(runs) = Runs::new(before, after, record, range.clone())? else { return Ok(None) };
     let mut moments = grid(&range, MOMENTS);
-    let Some(errors) = runs.least(&moments) else { return Ok(None) };
-    let noise: Vec<Autoregression> = errors.iter().map(|e| Autoregression::of(e)).collect();
+    let errors = |&k: &usize| Some((k, runs.errors(k)?));
+    let first: Vec<(usize, Errors)> = moments.iter().filter_map(errors).collect();
+    let Some(noise) = noise(&first) else { return Ok(None) };
+    let likely = |(k, errors): (usize, Errors)| {
+        let value: f64 = errors.iter().zip(&noise).map(|(e, own)| own.log_likelihood(e)).sum();
+        value.is_finite().then_some((k, value))
+    };
+    let mut known: Vec<(usize, f64)> = first.into_iter().filter_map(likely).collect();
     // over the range, then ever finer about the best as long as that leaves samples out
-    let mut known: Vec<(usize, f64)> = vec![];
     loop {
         let step = moments.windows(2).map(|two| two[1] - two[0]).max().unwrap_or(1);
-        moments.retain(|k| known.iter().all(|(own, _)| own != k));
-        let likely = |&k: &usize| Some((k, runs.log_likelihood(k, &noise)?));
-        known.extend(moments.iter().filter_map(likely));
-        known.sort_by_key(|(k, _)| *k);
         let top = known.iter().map(|(_, l)| *l).fold(f64::NEG_INFINITY, f64::max);
         let near: Vec<usize> =
             known.iter().filter(|(_, l)| *l > top - FAR).map(|(k, _)| *k).collect();
         let (Some(&first), Some(&last)) = (near.first(), near.last()) else { return Ok(None) };
         let inner =
             first.saturating_sub(step).max(range.start)..(last + step).min(range.end - 1) + 1;
-        if step <= 1 || moments.is_empty() || near.len() >= MOMENTS / 2 {
+        moments = grid(&inner, MOMENTS);
+        let new: Vec<usize> =
+            moments.iter().copied().filter(|k| known.iter().all(|(own, _)| own != k)).collect();
+        if step <= 1 || new.is_empty() || near.len() >= MOMENTS / 2 {
             return Ok(Some(posterior(record, &known, top)));
         }
-        moments = grid(&inner, MOMENTS);
+        known.extend(new.iter().filter_map(errors).filter_map(likely));
+        known.sort_by_key(|(k, _)| *k);
     }
 }
 
@@ -113,12 +121,6 @@ struct Runs<'a> {
     first: usize,
 }
 
-/// The free run of a model as its file has it.
-fn lane(run: &Run<'_>, start: Vec<f64>) -> Lane {
-    let (theta, effect_values) = (run.plan.signals.theta(), run.plan.effect_values());
-    Lane { theta, effect_values, starts: vec![start], ..Lane::default() }
-}
-
 impl<'a> Runs<'a> {
     fn new(
         before: &'a System,
@@ -130,15 +132,11 @@ impl<'a> Runs<'a> {
         let Some(start) = whole.starts(whole.init_samples(Init::Forgotten)).pop() else {
             return Ok(None);
         };
-        let until = |end: usize| Drive {
-            inputs: whole.drive.inputs.iter().map(|u| u[..end].to_vec()).collect(),
-            segments: std::iter::once(0..end).collect(),
-            clocks: whole.drive.clocks.clone(),
-        };
-        let lead = whole.system.run(&whole.plan, &until(range.start), &[lane(&whole, start)]);
+        let lane = whole.lane(vec![start]);
+        let lead = whole.system.run(&whole.plan, &whole.first(range.start), &[lane]);
         let compared = record.slice(range.start..range.end + AFTER);
         let own = Run::new(before, &compared)?;
-        let lane = lane(&own, lead.into_iter().next().map_or(vec![], |lead| lead.last));
+        let lane = own.lane(lead.into_iter().map(|lead| lead.last).collect());
         let mut track = own.system.run_seen(&own.plan, &own.drive, &lane);
         let states = (0..own.plan.sizes.x).map(|i| own.plan.sources.at(Origin::State(i)));
         let Some(states) = states.collect::<Option<Vec<usize>>>().filter(|_| track.is_finite())
@@ -158,11 +156,11 @@ impl<'a> Runs<'a> {
     }
 
     /// What is left of every measured output when the extended model takes over at a sample.
-    fn errors(&self, k: usize) -> Option<Vec<Vec<f64>>> {
+    fn errors(&self, k: usize) -> Option<Errors> {
         let (run, k) = (&self.after, k - self.first);
         let n = run.drive.len();
         let drive = Drive { segments: std::iter::once(k..n).collect(), ..run.drive.clone() };
-        let lane = lane(run, self.states.iter().map(|x| x[k]).collect());
+        let lane = run.lane(vec![self.states.iter().map(|x| x[k]).collect()]);
         let track = run.system.run(&run.plan, &drive, &[lane]).swap_remove(0);
         if !track.is_finite() {
             return None;
@@ -174,23 +172,15 @@ impl<'a> Runs<'a> {
         };
         self.measured.iter().map(error).collect()
     }
+}
 
-    /// What the moment leaves that leaves least, were its noise white and of any level.
-    fn least(&self, moments: &[usize]) -> Option<Vec<Vec<f64>>> {
-        let of = |&k: &usize| {
-            let errors = self.errors(k)?;
-            let known = |e: &[f64]| e.iter().copied().filter(|e| e.is_finite()).collect::<Vec<_>>();
-            let logs: f64 =
-                errors.iter().map(|e| known(e).len() as f64 * rms(&known(e)).ln()).sum();
-            (!logs.is_nan()).then_some((logs, errors))
-        };
-        moments.iter().filter_map(of).min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, errors)| errors)
-    }
-
-    /// Log likelihood of a moment under the noise of every measured output.
-    fn log_likelihood(&self, k: usize, noise: &[Autoregression]) -> Option<f64> {
-        let errors = self.errors(k)?;
-        let value: f64 = errors.iter().zip(noise).map(|(e, own)| own.log_likelihood(e)).sum();
-        value.is_finite().then_some(value)
-    }
+/// The noise of every output by the moment that leaves least, were it white and of any level.
+fn noise(moments: &[(usize, Errors)]) -> Option<Vec<Autoregression>> {
+    let level = |e: &Vec<f64>| {
+        let known: Vec<f64> = e.iter().copied().filter(|e| e.is_finite()).collect();
+        known.len() as f64 * rms(&known).ln()
+    };
+    let all = moments.iter().map(|(_, errors)| (errors.iter().map(level).sum::<f64>(), errors));
+    let least = all.filter(|(level, _)| !level.is_nan()).min_by(|a, b| a.0.total_cmp(&b.0))?.1;
+    Some(least.iter().map(|e| Autoregression::of(e)).collect())
 }

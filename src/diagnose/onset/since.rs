@@ -16,7 +16,7 @@ use crate::data::Record;
 use crate::diagnosis::{Diagnosis, without_test};
 use crate::error::DiagnoseError;
 use crate::evaluate::{EvaluateError, Init, Simulation, measured};
-use crate::findings::cause::Cause;
+use crate::findings::cause::{Cause, in_the_machine};
 use crate::findings::hand_over::Searched;
 use crate::findings::note::Note;
 use crate::innovations::criterion;
@@ -71,7 +71,7 @@ impl Diagnosis<'_> {
         loop {
             let from = [record.slice(at..record.len())];
             let searched = self.search(&from, test, self.max_causes, watch)?;
-            if machine(&searched.causes).next().is_none() {
+            if in_the_machine(&searched.causes).next().is_none() {
                 return Ok(None);
             }
             let pair = (self.system, &searched.extended);
@@ -101,7 +101,7 @@ impl Begun {
 
     /// Whether it is more probable than what was named in all samples.
     pub fn is_rather_than(&self, searched: &Searched, system: &System) -> bool {
-        match machine(&searched.causes).next() {
+        match in_the_machine(&searched.causes).next() {
             Some(_) => self.replaces(&searched.extended, numbers(&searched.causes), system),
             None => self.replaces(system, 0.0, system),
         }
@@ -155,18 +155,13 @@ impl Begun {
     }
 }
 
-/// Causes that are no faults of the data.
-fn machine(causes: &[Cause]) -> impl Iterator<Item = &Cause> {
-    causes.iter().filter(|cause| !cause.is_data_fault())
-}
-
 /// Numbers that causes in the machine have.
 fn numbers(causes: &[Cause]) -> f64 {
     let of = |cause: &Cause| match cause.parts.len() {
         0 => cause.parameters.len(),
         _ => cause.parts.iter().map(|part| part.parameters.len()).sum(),
     };
-    machine(causes).map(of).sum::<usize>() as f64
+    in_the_machine(causes).map(of).sum::<usize>() as f64
 }
 
 /// What a free run leaves of the measured outputs, not a number where nothing was measured.
