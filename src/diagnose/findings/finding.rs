@@ -222,8 +222,8 @@ impl Finding {
         of.map_or("", |(_, unit)| unit)
     }
 
-    /// Samples of a record that the finding is about: those from the moment on at which its causes begin,
-    /// where they begin within it, else all.
+    /// How many of the last samples of a record the finding is about: those from about the moment on at which
+    /// its causes begin, where they begin within it, else all.
     pub fn samples(&self, record: &Record) -> usize {
         let begins = |note: &Note| match note {
             Note::Begins { samples, .. } => Some(*samples),

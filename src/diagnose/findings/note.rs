@@ -18,7 +18,7 @@ pub enum Note {
     Begins {
         /// When, by the record's clock in s.
         time: f64,
-        /// Samples from then on.
+        /// Samples, from about then on, that the finding is about.
         samples: usize,
     },
     /// The records are longer than memory holds, or than is worth the time: stretches of them were looked at.

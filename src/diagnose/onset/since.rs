@@ -36,14 +36,15 @@ pub(crate) struct Begun {
     moment: Moment,
     /// Samples of the record that may choose: all but those of a test.
     seen: Record,
-    /// Samples of the record.
-    of: usize,
+    /// First sample that was searched, and samples from it to the end of the record.
+    first: usize,
+    samples: usize,
 }
 
 impl Diagnosis<'_> {
     /// What is named in the samples of a record from the moment on at which what the model leaves grows;
-    /// `None` where it does not, nothing in the machine is named, or the model integrates. The test record, or the part of this
-    /// one that serves as such, has no part in it.
+    /// `None` where it does not, nothing in the machine is named, or the model integrates. The test record,
+    /// or the part of this one that serves as such, has no part in it.
     ///
     /// # Errors
     ///
@@ -78,7 +79,13 @@ impl Diagnosis<'_> {
             let Some(moment) = moment(pair, &seen, at)? else { return Ok(None) };
             let late = at + (LATER * seen.len() as f64) as usize;
             if moment.sample <= late || watch.stopped() {
-                return Ok(Some(Begun { searched, moment, seen, of: record.len() }));
+                return Ok(Some(Begun {
+                    searched,
+                    moment,
+                    seen,
+                    first: at,
+                    samples: record.len() - at,
+                }));
             }
             at = moment.sample;
         }
@@ -122,15 +129,14 @@ impl Begun {
 
     /// What was searched, its causes with the moment at which they begin.
     pub fn dated(self) -> Searched {
-        let Self { mut searched, moment, of, .. } = self;
+        let Self { mut searched, moment, first, samples, .. } = self;
         for cause in &mut searched.causes {
             match &mut cause.rows {
-                Some(rows) => rows.iter_mut().for_each(|row| *row += moment.sample),
+                Some(rows) => rows.iter_mut().for_each(|row| *row += first),
                 None => cause.onset = Some(moment.onset),
             }
         }
-        let (time, samples) = (moment.onset.time, of - moment.sample);
-        searched.notes.insert(0, Note::Begins { time, samples });
+        searched.notes.insert(0, Note::Begins { time: moment.onset.time, samples });
         searched
     }
 

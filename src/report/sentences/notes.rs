@@ -32,8 +32,8 @@ pub fn note(note: &Note) -> String {
             number(*seconds, None)
         ),
         Note::Begins { time, samples } => format!(
-            "Until {} the model as it is describes the record. All figures are of the {samples} samples \
-             from then on, and so is the extended model.",
+            "Until {} the model as it is describes the record. All figures are of the last {samples} \
+             samples, and so is the extended model.",
             with_unit(*time, "s")
         ),
         Note::Thinned { samples, of, stretches, memory } => {
