@@ -4,10 +4,12 @@
 
 mod data_faults;
 mod disturbed;
+mod equation_noise;
 mod exam;
 mod first_use;
 mod hard_plants;
 mod hidden_effect;
+mod load_friction;
 mod network;
 mod noise_levels;
 mod nulls;

@@ -15,6 +15,7 @@ pub mod harmonic;
 pub mod hinge;
 pub mod hysteresis;
 pub mod lag;
+pub mod load_friction;
 pub mod network;
 pub mod parameter;
 pub mod polynomial;

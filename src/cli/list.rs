@@ -96,6 +96,7 @@ pub fn all_effects() -> (Value, String) {
             Needs::Nothing => "nothing",
             Needs::Coordinate => "a coordinate",
             Needs::Velocity => "a velocity",
+            Needs::VelocityUnderLoad => "a velocity and a load",
             Needs::NoVelocity => "a coordinate that is no velocity",
             Needs::CoordinateWithRate => "a coordinate whose rate is known",
             Needs::Motion => "a position, a velocity or a force",

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::candidates::library::Allowed;
 use super::fit::covariance::Precision;
+use super::fit::efficient::efficient;
 use super::fit::finished::{Finished, moved_along_ridge};
 use super::fit::found::Found;
 use super::fit::hypothesis::{Moved, Track};
@@ -75,7 +76,16 @@ impl<'a, 'b> Tracks<'a, 'b> {
                 found.spikes = spikes;
             }
         }
-        let precision = Precision::new(self.problem, &nuisance, &fitted);
+        let mut precision = Precision::new(self.problem, &nuisance, &fitted);
+        let mut by = None;
+        let stop = || self.watch.stopped();
+        let errors = precision.as_ref();
+        if let Some(again) =
+            errors.and_then(|e| efficient(self.problem, &nuisance, &fitted, e, &stop))
+        {
+            (fitted, y, precision) = (again.fitted, again.y, Some(again.precision));
+            by = Some(again.by);
+        }
         let moved_along_ridge = moved_along_ridge(&nuisance, &fitted, precision.as_ref());
         let dependence = dependence(self.problem, self.nominal, &y);
         let mut finished = Finished {
@@ -84,6 +94,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
             fitted,
             nuisance,
             precision,
+            by,
             moved: vec![],
             moved_along_ridge,
             y,

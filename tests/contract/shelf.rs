@@ -142,10 +142,16 @@ pub fn places(system: &System, effect: &dyn CandidateEffect) -> Vec<Placed> {
         named(&signals.own_channels()).into_iter().chain(ends.clone()).chain(parameters).collect();
     let mut of: Vec<Option<String>> = vec![None, Some("time".into())];
     of.extend(named(&signals.own_coordinates()).into_iter().chain(ends).map(Some));
+    // what looks at several coordinates looks at outputs and inputs beside the first
+    let further = effect.card().made_for.map_or(0, |made| made.len().saturating_sub(1));
+    let beside = named(&signals.outputs).into_iter().chain(named(&signals.inputs));
+    let beside: Vec<String> = beside.collect();
     let mut places = vec![];
     for into in &into {
         for of in &of {
             let mut placed = Placed::new(effect.boxed(), into, of.as_deref());
+            let other = |name: &&String| Some(*name) != of.as_ref();
+            placed.also_of = beside.iter().filter(other).take(further).cloned().collect();
             let own = signals.parameters.iter().find(|p| p.name == *into);
             if let (Mechanism::Parameter, Some(own)) = (effect.card().mechanism, own) {
                 // a value near the present one, with which the model still runs

@@ -190,6 +190,17 @@ impl Case {
         Diagnosis::of(&system(self.plant)).run(&[record], None, &()).unwrap()
     }
 
+    /// Whether the effect at its place heads a cause or stands among the look-alikes of one.
+    fn is_in_a_set(&self, finding: &Finding) -> bool {
+        let others = finding.causes.iter().flat_map(|cause| &cause.indistinguishable);
+        let in_a_set = others.into_iter().any(|other| {
+            other.effect == self.effect
+                && other.into == self.into
+                && other.of.as_deref() == Some(self.of)
+        });
+        in_a_set || self.judged(finding).0
+    }
+
     /// Whether the first cause is the effect at its place, and all that was said.
     fn judged(&self, finding: &Finding) -> (bool, String) {
         let first = finding.causes.first();
@@ -258,20 +269,22 @@ fn causes_are_explained_together_and_the_rest_is_noise() {
 fn rates() {
     let seeds: u64 = std::env::var("SEEDS").ok().and_then(|s| s.parse().ok()).unwrap_or(20);
     let only = std::env::var("ONLY").unwrap_or_default();
-    println!("| plant | nothing hidden: named | effect named first | seconds |");
-    println!("| --- | --- | --- | --- |");
+    println!("| plant | nothing hidden: named | effect named first | first or among look-alikes | seconds |");
+    println!("| --- | --- | --- | --- | --- |");
     for case in cases().iter().filter(|case| case.name.contains(&only)) {
         let size = case.as_large_as_noise();
-        let (mut wrong, mut right, mut seconds) = (0, 0, 0.0);
+        let (mut wrong, mut right, mut within, mut seconds) = (0, 0, 0, 0.0);
         for seed in 0..seeds {
             let nothing = case.finding(0.0, 3000, 200 + seed);
             wrong += usize::from(nothing.in_the_machine().next().is_some());
             let hidden = case.finding(size, 3000, 400 + seed);
             let (named, said) = case.judged(&hidden);
             right += usize::from(named);
+            let in_a_set = case.is_in_a_set(&hidden);
+            within += usize::from(in_a_set);
             seconds += nothing.seconds + hidden.seconds;
             eprintln!(
-                "{} {seed}: {} / {named} {said} ({:.1} s, {:.1} s)",
+                "{} {seed}: {} / {named} {in_a_set} {said} ({:.1} s, {:.1} s)",
                 case.name,
                 case.judged(&nothing).1,
                 nothing.seconds,
@@ -279,6 +292,7 @@ fn rates() {
             );
         }
         let each = seconds / (2.0 * seeds as f64);
-        println!("| {} | {wrong} of {seeds} | {right} of {seeds} | {each:.1} |", case.name);
+        let counts = [wrong, right, within].map(|count| format!("{count} of {seeds}"));
+        println!("| {} | {} | {each:.1} |", case.name, counts.join(" | "));
     }
 }

@@ -102,6 +102,9 @@ pub enum Needs {
     Coordinate,
     /// A velocity that changes sign along the record.
     Velocity,
+    /// A velocity that changes sign along the record, and a force as a second coordinate: the load that is
+    /// transmitted. A search tries what has the channel's unit.
+    VelocityUnderLoad,
     /// Any coordinate that is no velocity: gaps and end stops are of places, levels, forces. Flat around
     /// zero of a velocity is friction without its name.
     NoVelocity,

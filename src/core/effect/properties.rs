@@ -20,6 +20,13 @@ pub enum Size {
     },
     /// As the factor 1 + this parameter.
     Factor(&'static str),
+    /// As a size by itself, and what is added per unit of the second coordinate.
+    Growing {
+        /// Name of the coefficient without it.
+        alone: &'static str,
+        /// Name of the coefficient per unit of it.
+        by: &'static str,
+    },
     /// By the sum of two coefficients, where a record tells the sum better than either.
     Total([&'static str; 2]),
 }

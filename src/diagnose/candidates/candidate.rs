@@ -66,6 +66,9 @@ pub(crate) struct Candidate {
     pub probe: f64,
     /// Rate at which w changes the coordinate: how stiff a steep friction law is.
     pub stiffness: Stiffness,
+    /// Largest magnitude along the record of the further coordinate that coefficients beyond the first go
+    /// with; 1 where there is none.
+    pub load: f64,
     /// Rate at which the channel changes the coordinate, D; 0 where it is not known.
     pub push: f64,
     pub named: Named,
@@ -112,7 +115,7 @@ impl Candidate {
     /// Whether it is a function of its coordinate alone, which a curve can be read as.
     pub fn is_curve(&self) -> bool {
         let of_rate = matches!(self.card.needs, Needs::CoordinateWithRate | Needs::Motion);
-        self.same_place(self) && self.card.states == 0 && !of_rate
+        self.same_place(self) && self.also_of.is_empty() && self.card.states == 0 && !of_rate
     }
 
     /// Whether it is blended in by a factor from 0 to 1, having no coefficient.
@@ -176,7 +179,9 @@ impl Candidate {
         }
         let width = self.card.position(self.card.properties.smoothing_width);
         if let Some(width) = width {
-            let level: f64 = self.linear.iter().map(|&i| clipped[i].abs()).sum();
+            let reach = |at: usize| if at == 0 { 1.0 } else { self.load };
+            let levels = self.linear.iter().enumerate();
+            let level: f64 = levels.map(|(at, &i)| clipped[i].abs() * reach(at)).sum();
             clipped[width] = clipped[width].max(0.5 * level * self.stiffness.at(theta) * step);
         }
         clipped

@@ -169,7 +169,8 @@ impl Builder<'_, '_> {
         let time = self.time();
         let source = spot.source.unwrap_or(time);
         let grid = self.grid(name, shape, card, (source, spot.own_path));
-        let stiffness = match card.needs == Needs::Velocity && push != 0.0 {
+        let rubs = matches!(card.needs, Needs::Velocity | Needs::VelocityUnderLoad);
+        let stiffness = match rubs && push != 0.0 {
             true => self.stiffness(spot.target, source, push),
             false => Stiffness::default(),
         };
@@ -222,6 +223,7 @@ impl Builder<'_, '_> {
                 probe,
                 push,
                 stiffness: stiffness.clone(),
+                load: 1.0,
                 named: Named {
                     bare: self.is_bare(spot.source),
                     own_path: spot.own_path,

@@ -8,6 +8,7 @@ pub(crate) mod grids;
 pub(crate) mod law_regression;
 pub(crate) mod leading_places;
 pub(crate) mod library;
+mod loads;
 pub(crate) mod naming;
 pub(crate) mod network_start;
 pub(crate) mod placement;

@@ -56,6 +56,7 @@ impl Builder<'_, '_> {
                 push: 0.0,
                 named: Named::default(),
                 units: (parameter.unit.clone(), "s".into()),
+                load: 1.0,
                 twins: vec![],
                 card: card.clone(),
             });
@@ -146,7 +147,7 @@ impl Builder<'_, '_> {
             let spot = Spot { target, source: Some(source), own_path: false };
             let signal = &base.sources.entries[source].0;
             let (push, rate) = match card.needs {
-                Needs::Velocity => {
+                Needs::Velocity | Needs::VelocityUnderLoad => {
                     let velocity = match &signal.quantity {
                         Some(quantity) => quantity.is_velocity(),
                         None => true,
@@ -207,6 +208,10 @@ impl Builder<'_, '_> {
                 _ => (0.0, None),
             };
             let first = self.found.len();
+            if card.needs == Needs::VelocityUnderLoad {
+                self.under_loads(name, shape, card, spot, push, sources, &twins(Some(source)));
+                continue;
+            }
             self.push(name, shape, card, spot, push, rate, twins(Some(source)));
             // a law of either sign that has words for both needs to know which is which
             let named = Named { quantity: self.quantity(source), ..Named::default() };

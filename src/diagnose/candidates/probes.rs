@@ -62,7 +62,8 @@ impl Sharing<'_, '_> {
         parameters: &[f64],
         blend: f64,
     ) -> Option<Job> {
-        let (Wire::Stage(route), true) = (&cause.wire, cause.also_into.is_empty()) else {
+        let is_plain = cause.also_into.is_empty() && cause.also_of.is_empty();
+        let (Wire::Stage(route), true) = (&cause.wire, is_plain) else {
             return with_candidate(self.problem, self.model, cause, parameters, blend, self.grain);
         };
         // same effect, same absent bounds, same need of a rate: the same compiled slot

@@ -58,7 +58,8 @@ impl Context<'_, '_> {
             noise.estimate(residual).log_likelihood - spent
         };
         let numbers: usize = chosen.fitted.model.added.iter().map(|a| a.cause.unknowns()).sum();
-        let own = worth(&chosen.fitted.residuals, numbers + chosen.moved.len());
+        let left = self.problem.residual(&chosen.y, Part::All);
+        let own = worth(&left, numbers + chosen.moved.len());
         let fitted = refit(self.problem, &nuisance, &models, Refit::last()).into_iter().flatten();
         let mut models: Vec<(f64, Fitted)> =
             fitted.map(|fitted| (worth(&fitted.residuals, 1) - own, fitted)).collect();

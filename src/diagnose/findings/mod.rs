@@ -14,6 +14,7 @@ mod held;
 pub(crate) mod law_band;
 pub(crate) mod nearest_shape;
 mod noise_level;
+mod noise_floors;
 pub(crate) mod note;
 mod numbers;
 mod order;

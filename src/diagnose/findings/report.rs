@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use crate::data::Record;
 use crate::error::DiagnoseError;
 use crate::evaluate::Metrics;
 use crate::findings::cause::Cause;
@@ -16,7 +15,7 @@ use crate::findings::series::{Series, TestSeries};
 use crate::fit::finished::Finished;
 use crate::fit::hypothesis::{Moved, Track};
 use crate::fit::problem::{Grain, Model, Part};
-use crate::fit::refit::{Refit, refit};
+use crate::fit::refit::Refit;
 use crate::model::with_parameters;
 use crate::prepare::input_dependence::DEPENDS;
 use crate::statistics::{rms, whiteness};
@@ -24,7 +23,6 @@ use crate::system::System;
 use crate::validate::false_discovery::false_discovery;
 use crate::validate::gain::gain;
 use crate::validate::noise_floor::NoiseFloor;
-use crate::validate::noise_floor::{self, predicted, repeated};
 use crate::validate::test_error::Counted;
 
 /// Share of the removable error that a curve of unknown shape must remove to explain it.
@@ -50,7 +48,9 @@ impl Context<'_, '_> {
         let y_before = y_before.unwrap_or_else(|| chosen.y.clone());
         let drives: Vec<&[f64]> = self.joined.drive.inputs.iter().map(Vec::as_slice).collect();
         let off_before = self.off(&y_before);
+        let tested = test.series(system, &before, &after)?;
         let floors = test.floors(system, &before, &off_before, &drives);
+        let floors = self.floors_of_test(chosen, &tested, floors);
         // stretches of one record are no records
         let several = self.joined.spans.len() > 1 && !matches!(test.counted, Counted::All);
         let by = By {
@@ -89,14 +89,14 @@ impl Context<'_, '_> {
         let (curve, note) = nearest.unzip();
         series.curves.extend(curve);
         notes.extend(note);
-        let noise_floor = self.noise_floor(&off_before, &drives, from.used);
+        let noise_floor = self.noise_floors(chosen, &off_before, &drives, from.used);
         let regime = match verdict {
             Verdict::CausesFound | Verdict::Unexplained => {
                 self.regimes(structural > 0, &noise_floor, &y_before, chosen)
             }
             _ => BTreeMap::new(),
         };
-        series.test = test.series(system, &before, &after)?;
+        series.test = tested;
         most_first(&mut causes, chosen);
         Ok(Searched {
             verdict,
@@ -199,7 +199,7 @@ impl Context<'_, '_> {
         let models = std::slice::from_ref(model);
         let mut nuisance = chosen.nuisance.clone();
         nuisance.free.retain(|&(p, _)| !self.is_held(p));
-        refit(self.problem, &nuisance, models, Refit::last()).swap_remove(0).map(|f| f.model)
+        chosen.refit(self.problem, &nuisance, models, Refit::last()).swap_remove(0).map(|f| f.model)
     }
 
     fn is_held(&self, p: usize) -> bool {
@@ -222,29 +222,9 @@ impl Context<'_, '_> {
     }
 
     /// What a simulation leaves of every output.
-    fn off(&self, y: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    pub(super) fn off(&self, y: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let outputs = self.joined.measured.iter().zip(y);
         outputs.map(|(measured, y)| measured.iter().zip(y).map(|(a, b)| a - b).collect()).collect()
-    }
-
-    fn noise_floor(
-        &self,
-        off: &[Vec<f64>],
-        drives: &[&[f64]],
-        used: &[Record],
-    ) -> BTreeMap<String, NoiseFloor> {
-        let outputs = self.problem.base.signals.outputs.iter().enumerate();
-        outputs
-            .filter_map(|(o, signal)| {
-                let periods = used.first().filter(|_| used.len() == 1).and_then(Record::periods);
-                let from_periods = periods
-                    .and_then(|p| repeated(&self.joined.measured[o], p.samples, p.samples / 10));
-                let floor =
-                    from_periods.or_else(|| predicted(noise_floor::Left { r: &off[o], drives }))?;
-                let entry = NoiseFloor { std: floor.std, method: floor.method.into() };
-                Some((signal.name.clone(), entry))
-            })
-            .collect()
     }
 
     fn ranking(&self, chosen: &Finished) -> Vec<Ranked> {

@@ -82,7 +82,8 @@ impl Tracks<'_, '_> {
         let how = Refit::last();
         // derivatives where it stands
         let how = Refit { settings: Settings { iterations: 1, ..how.settings }, ..how };
-        let fitted = refit(self.problem, &all, std::slice::from_ref(model), how).swap_remove(0);
+        let models = std::slice::from_ref(model);
+        let fitted = answer.refit(self.problem, &all, models, how).swap_remove(0);
         let doubted = fitted.and_then(|fitted| Precision::new(self.problem, &all, &fitted));
         Finished { precision: doubted.or(answer.precision), ..answer }
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use nalgebra::{DMatrix, DVector};
 
 use crate::estimate::Combination;
+use crate::evidence::Whitener;
 use crate::findings::note::Disturbance;
 use crate::fit::covariance::Precision;
 use crate::fit::found::Found;
@@ -24,6 +25,8 @@ pub(crate) struct Finished {
     pub fitted: Fitted,
     pub nuisance: Nuisance,
     pub precision: Option<Precision>,
+    /// The filter that it was fitted in, where the disturbance is not white.
+    pub by: Option<Arc<dyn Whitener>>,
     pub moved: Vec<Moved>,
     /// Whether parameters moved along a ridge, where none of them has to.
     pub moved_along_ridge: bool,

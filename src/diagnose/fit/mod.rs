@@ -6,6 +6,7 @@ pub(crate) mod allowing;
 pub(crate) mod block_jacobian;
 pub(crate) mod collinear;
 pub(crate) mod covariance;
+pub(crate) mod efficient;
 pub(crate) mod explained;
 pub(crate) mod finished;
 pub(crate) mod fitted;

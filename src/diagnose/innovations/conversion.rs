@@ -91,6 +91,7 @@ pub(super) fn finished(
         fitted: Fitted { model, keys, columns: vec![], residuals },
         nuisance: Nuisance::new(problem, &prepared.nominal),
         precision: Some(precision),
+        by: None,
         moved: vec![],
         moved_along_ridge: false,
         y,

@@ -40,6 +40,7 @@ pub(crate) fn candidate(into: &str) -> Candidate {
         push: 0.0,
         named: Named { quantity: None, own_path: false, bare: false },
         units: (String::new(), String::new()),
+        load: 1.0,
         twins: vec![],
     }
 }

@@ -135,7 +135,8 @@ impl Ranker<'_, '_> {
         let is_path = cause.wire == Wire::Path;
         let both = (self.problem, self.nominal);
         let place = target.and_then(|target| Place::of(both, target, is_path));
-        let is_law = cause.card.mechanism == Mechanism::Law && cause.also_into.is_empty();
+        let is_plain = cause.also_into.is_empty() && cause.also_of.is_empty();
+        let is_law = cause.card.mechanism == Mechanism::Law && is_plain;
         let (Some(source), Some(place), true) = (source, place, is_law) else { return Way::Not };
         let mut parameters = cause.starts[probe.start].clone();
         if let Some(&own) = cause.linear.get(probe.which) {

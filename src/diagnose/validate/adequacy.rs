@@ -10,11 +10,10 @@
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run};
 use crate::prepare::windows::windows;
-use crate::statistics::{Regression, deviation, mean};
+use crate::statistics::Regression;
 use crate::system::{Lane, System};
+use crate::validate::independent::{LAGS, curves};
 
-/// Samples that an input is looked back by.
-const LAGS: usize = 4;
 /// Parameters whose sensitivities are tested, at most.
 const PARAMETERS: usize = 24;
 /// Relative change of a parameter for a finite difference.
@@ -123,31 +122,17 @@ impl Adequacy {
         let mut tested = self.sensitivities[o].clone();
         tested.push(vec![1.0; n]);
         tested.push((0..n).map(|k| k as f64 / n.max(1) as f64).collect());
-        tested.extend(self.curves(&self.simulated[o], 0));
+        tested.extend(curves(&self.simulated[o], 0));
         for lag in 0..LAGS {
             for input in &self.inputs {
-                tested.extend(self.curves(input, lag));
+                tested.extend(curves(input, lag));
             }
             if lag > 0 && lag < 3 {
-                tested.extend(self.curves(&self.simulated[o], lag));
+                tested.extend(curves(&self.simulated[o], lag));
             }
         }
         let of = Regression { r: series, segments: &self.segments, nuisance: &[], tested: &tested };
         of.test().map(|dependence| dependence.p_value)
-    }
-
-    /// A series in units of its deviation, its square and its signed square, so many samples late.
-    fn curves(&self, of: &[f64], lag: usize) -> [Vec<f64>; 3] {
-        let known: Vec<f64> = of.iter().copied().filter(|v| v.is_finite()).collect();
-        let (centre, size) = (mean(&known), deviation(&known).max(f64::MIN_POSITIVE));
-        let z: Vec<f64> = (0..of.len())
-            .map(|k| match (of[k.saturating_sub(lag)] - centre) / size {
-                z if z.is_finite() => z,
-                _ => 0.0,
-            })
-            .collect();
-        let curve = |f: fn(f64) -> f64| z.iter().map(|&z| f(z)).collect();
-        [curve(|z| z), curve(|z| z * z), curve(|z| z * z.abs())]
     }
 }
 

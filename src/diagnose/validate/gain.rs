@@ -64,8 +64,13 @@ pub(crate) fn gain(before: &Scored, after: &Scored, floors: &[Option<Floor>]) ->
         let both = before.errors[o].iter().zip(&after.errors[o]);
         let kept = both.filter(|(b, a)| b.is_finite() && a.is_finite());
         // every sample's part of what is removed, and of what can be
+        let can = |b: f64, a: f64| match floors[o].and_then(|floor| floor.excess) {
+            // the noise is what the model leaves of the same sample
+            Some(excess) => (b * b - a * a + excess) / unit,
+            None => b * b / unit - floor,
+        };
         let (top, bottom): (Vec<f64>, Vec<f64>) =
-            kept.map(|(b, a)| ((b * b - a * a) / unit, b * b / unit - floor)).unzip();
+            kept.map(|(b, a)| ((b * b - a * a) / unit, can(*b, *a))).unzip();
         let less =
             |s: f64| -> Vec<f64> { top.iter().zip(&bottom).map(|(t, b)| t - s * b).collect() };
         let count = blocks(&less(error_removed));

@@ -4,6 +4,7 @@ pub(crate) mod adequacy;
 pub(crate) mod false_discovery;
 pub(crate) mod gain;
 pub(crate) mod goodness_of_fit;
+pub(crate) mod independent;
 pub(crate) mod noise_floor;
 pub(crate) mod overlap;
 pub(crate) mod test_error;

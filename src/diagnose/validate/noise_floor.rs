@@ -15,6 +15,8 @@ pub struct NoiseFloor {
     pub method: String,
 }
 
+/// How a noise is found where periods repeat.
+pub(crate) const REPEATED: &str = "repeated periods";
 /// Past values of the residual that predict the next one.
 const PAST: usize = 16;
 /// Samples that inputs are looked back by.
@@ -35,6 +37,8 @@ pub struct Floor {
     pub method: &'static str,
     /// Relative standard error of its square, beyond what noise that is scored itself makes up.
     pub doubt: f64,
+    /// Mean square of the error of the model that it is the rest of, where it is one.
+    pub excess: Option<f64>,
 }
 
 /// What a machine leaves unsaid by its model: residuals of an output, and the inputs.
@@ -57,7 +61,7 @@ pub(crate) fn repeated(y: &[f64], period: usize, from: usize) -> Option<Floor> {
     let square = differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64;
     // neighbouring differences share a sample
     let doubt = (3.0 / differences.len() as f64).sqrt();
-    Some(Floor { std: (0.5 * square).sqrt(), method: "repeated periods", doubt })
+    Some(Floor { std: (0.5 * square).sqrt(), method: REPEATED, doubt, excess: None })
 }
 
 /// From one-step prediction: the residual of the baseline is predicted from its own past
@@ -139,7 +143,7 @@ impl Predictor {
         let added = self.weights.len() as f64 / self.rows as f64;
         let std = (square / (1.0 + added)).sqrt();
         let method = "one-step prediction of what the baseline leaves";
-        std.is_finite().then_some(Floor { std, method, doubt: 0.5 * added })
+        std.is_finite().then_some(Floor { std, method, doubt: 0.5 * added, excess: None })
     }
 }
 

@@ -44,6 +44,7 @@ pub fn is_resolved(cause: &Cause) -> bool {
     }
     let stated = match wording.size {
         Size::Wave { sine, cosine, .. } => amplitude(cause, sine, cosine),
+        Size::Growing { alone, by } => return is_either_resolved(cause, [alone, by]),
         _ => headline_value(cause).map(|v| match wording.site {
             Site::Parameter => (v.value - wording.nominal.unwrap_or(0.0), v.std_error),
             _ => (v.value, v.std_error),
@@ -51,6 +52,12 @@ pub fn is_resolved(cause: &Cause) -> bool {
     };
     let Some((value, Some(error))) = stated else { return true };
     !error.is_finite() || value.abs() > HALF * error
+}
+
+/// Whether the 95 % interval of one of two numbers does not hold 0.
+fn is_either_resolved(cause: &Cause, names: [&str; 2]) -> bool {
+    let mut own = cause.parameters.iter().filter(|v| names.contains(&&v.name[..]));
+    own.any(|v| v.std_error.is_none_or(|error| v.value.abs() > HALF * error))
 }
 
 /// How sure the law is, where hypotheses were compared: ` (98 %)`.
@@ -144,6 +151,7 @@ fn size(cause: &Cause) -> String {
     match wording.size {
         Size::Wave { order, sine, cosine } => wave(cause, order, sine, cosine),
         Size::Factor(name) => factor(cause, name),
+        Size::Growing { alone, by } => growing(cause, alone, by),
         Size::First | Size::Total(_) => match headline_value(cause) {
             Some(v) if wording.first.is_some() => format!(", {}", first(cause, v)),
             _ => {
@@ -155,6 +163,15 @@ fn size(cause: &Cause) -> String {
             }
         },
     }
+}
+
+/// `, 0.31 +- 0.02 N and 0.120 +- 0.004 of load`.
+fn growing(cause: &Cause, alone: &str, by: &str) -> String {
+    let find = |name: &str| cause.parameters.iter().find(|v| v.name == name);
+    let (Some(alone), Some(by)) = (find(alone), find(by)) else { return String::new() };
+    let magnitude = |v: &Value| interval(v.value.abs(), v.std_error, &v.unit);
+    let load = cause.also_of.first().map_or("the load", String::as_str);
+    format!(", {} and {} of {load}", magnitude(alone), magnitude(by))
 }
 
 /// A coefficient with its sign in words where there are any.

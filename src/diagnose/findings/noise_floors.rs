@@ -1,0 +1,84 @@
+//! The noise of every output, on the data that a search used and on those that it did not.
+//!
+//! Where periods repeat, what differs between them is noise; else, where what the extended model leaves
+//! depends on nothing that drives the machine, all of that is (`validate::independent`); else noise is at
+//! most what a linear predictor leaves of the baseline's residual (`validate::noise_floor`).
+
+use std::collections::BTreeMap;
+
+use crate::data::Record;
+use crate::findings::context::Context;
+use crate::findings::series::TestSeries;
+use crate::fit::finished::Finished;
+use crate::validate::independent::{Simulated, excess, independent};
+use crate::validate::noise_floor::{Floor, Left, NoiseFloor, REPEATED, predicted, repeated};
+
+impl Context<'_, '_> {
+    /// Noise of every output on the data that were fitted; `off` is what the baseline leaves.
+    pub(super) fn noise_floors(
+        &self,
+        chosen: &Finished,
+        off: &[Vec<f64>],
+        drives: &[&[f64]],
+        used: &[Record],
+    ) -> BTreeMap<String, NoiseFloor> {
+        let problem = self.problem;
+        let excess = self.excess(chosen);
+        let left = self.off(&chosen.y);
+        let of = |o: usize| {
+            let periods = used.first().filter(|_| used.len() == 1).and_then(Record::periods);
+            let measured = &self.joined.measured[o];
+            let repeated = periods.and_then(|p| repeated(measured, p.samples, p.samples / 10));
+            let own = || {
+                let counts = problem.weight[o].iter().map(|w| *w > 0.0);
+                let left: Vec<f64> =
+                    left[o].iter().zip(counts).map(|(r, c)| if c { *r } else { f64::NAN }).collect();
+                let of = Simulated {
+                    left: &left,
+                    simulated: &chosen.y[o],
+                    inputs: &self.joined.drive.inputs,
+                    segments: &self.joined.drive.segments,
+                };
+                independent(&of, excess[o])
+            };
+            repeated.or_else(own).or_else(|| predicted(Left { r: &off[o], drives }))
+        };
+        let signals = problem.base.signals.outputs.iter().enumerate();
+        let entry = |floor: Floor| NoiseFloor { std: floor.std, method: floor.method.into() };
+        signals.filter_map(|(o, signal)| Some((signal.name.clone(), entry(of(o)?)))).collect()
+    }
+
+    /// Noise of every output on the data that were not used: that of the extended model where what it
+    /// leaves depends on nothing, else as it was found without it.
+    pub(super) fn floors_of_test(
+        &self,
+        chosen: &Finished,
+        test: &TestSeries,
+        others: Vec<Option<Floor>>,
+    ) -> Vec<Option<Floor>> {
+        let excess = self.excess(chosen);
+        let ends = test.begins.iter().skip(1).copied();
+        let count = test.measured.iter().map(Vec::len).max().unwrap_or(0);
+        let segments: Vec<_> =
+            test.begins.iter().zip(ends.chain([count])).map(|(&a, b)| a..b).collect();
+        let own = |o: usize| {
+            let (measured, simulated) = (&test.measured[o], &test.after[o]);
+            let left: Vec<f64> = measured.iter().zip(simulated).map(|(y, s)| y - s).collect();
+            let whole = left.len() == count && test.inputs.iter().all(|u| u.len() == count);
+            let (inputs, segments) = (&test.inputs[..], &segments[..]);
+            let of = Simulated { left: &left, simulated, inputs, segments };
+            whole.then(|| independent(&of, excess[o])).flatten()
+        };
+        let floor = |(o, other): (usize, Option<Floor>)| match other {
+            Some(floor) if floor.method == REPEATED => Some(floor),
+            other => own(o).or(other),
+        };
+        others.into_iter().enumerate().map(floor).collect()
+    }
+
+    /// Mean square, in the outputs' units, of what the errors of the numbers do.
+    fn excess(&self, chosen: &Finished) -> Vec<f64> {
+        let scaled = excess(chosen, self.problem.y.len());
+        scaled.iter().zip(&self.problem.scale).map(|(e, scale)| e * scale * scale).collect()
+    }
+}

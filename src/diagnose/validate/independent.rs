@@ -1,0 +1,131 @@
+//! Noise as what a model leaves that depends on nothing which drives the machine.
+//!
+//! Where the score test of a dynamic regression ([`Regression`]) does not find what a model leaves,
+//! r = y - yhat, to depend on inputs and simulated outputs, r is noise, whatever its colour, and the
+//! model's own error, of which two things are known:
+//!
+//! ```text
+//! E d^2 = mean over the samples of J C J'       by the covariance C of its numbers
+//! std of d^2 = sqrt(2 nu) r^2 / n               by the test, of nu columns and n samples
+//! ```
+//!
+//! Ljung, "System Identification", 2nd ed., sections 16.4 (variance of a prediction) and 16.6.
+
+use crate::fit::finished::Finished;
+use crate::fit::nuisance::Key;
+use crate::statistics::{Regression, deviation, dot, mean};
+use crate::validate::noise_floor::Floor;
+
+/// Samples that an input is looked back by.
+pub(super) const LAGS: usize = 4;
+/// Level of the test.
+const LEVEL: f64 = 0.05;
+
+/// What was measured and simulated of one output, and the inputs.
+pub(crate) struct Simulated<'a> {
+    /// What the model leaves; not a number where nothing is known.
+    pub left: &'a [f64],
+    pub simulated: &'a [f64],
+    pub inputs: &'a [Vec<f64>],
+    pub segments: &'a [std::ops::Range<usize>],
+}
+
+/// The noise of an output where what a model leaves of it depends on nothing; `excess` is the mean square
+/// of what the errors of its numbers do.
+pub(crate) fn independent(of: &Simulated<'_>, excess: f64) -> Option<Floor> {
+    let tested: Vec<Vec<f64>> = curves(of.simulated, 0)
+        .into_iter()
+        .chain((0..LAGS).flat_map(|lag| of.inputs.iter().flat_map(move |u| curves(u, lag))))
+        .collect();
+    let nuisance = [vec![1.0; of.left.len()]];
+    let regression =
+        Regression { r: of.left, segments: of.segments, nuisance: &nuisance, tested: &tested };
+    let found = regression.test()?;
+    let known: Vec<f64> = of.left.iter().copied().filter(|v| v.is_finite()).collect();
+    let (n, square) = (known.len() as f64, dot(&known, &known) / known.len().max(1) as f64);
+    if found.p_value < LEVEL || !(square > 0.0) || !(excess < square) {
+        return None;
+    }
+    let noise = square - excess;
+    let error = excess.hypot((2.0 * found.freedom).sqrt() * square / n);
+    Some(Floor {
+        std: noise.sqrt(),
+        method: "what the model leaves, which depends on no input",
+        doubt: error / noise,
+        excess: Some(excess),
+    })
+}
+
+/// A series in units of its deviation, its square and its signed square, so many samples late.
+pub(super) fn curves(of: &[f64], lag: usize) -> [Vec<f64>; 3] {
+    let known: Vec<f64> = of.iter().copied().filter(|v| v.is_finite()).collect();
+    let (centre, size) = (mean(&known), deviation(&known).max(f64::MIN_POSITIVE));
+    let z: Vec<f64> = (0..of.len())
+        .map(|k| match (of[k.saturating_sub(lag)] - centre) / size {
+            z if z.is_finite() => z,
+            _ => 0.0,
+        })
+        .collect();
+    let curve = |f: fn(f64) -> f64| z.iter().map(|&z| f(z)).collect();
+    [curve(|z| z), curve(|z| z * z), curve(|z| z * z.abs())]
+}
+
+/// Mean square of what the errors of a fit's numbers do to each output, in units of the residuals: E d^2
+/// on the data that were fitted; initial states, which are forgotten, apart.
+pub(crate) fn excess(chosen: &Finished, outputs: usize) -> Vec<f64> {
+    let fitted = &chosen.fitted;
+    let samples = fitted.residuals.len() / outputs.max(1);
+    let is_number = |key: &Key| !matches!(key, Key::Start(..));
+    let numbers: Vec<usize> =
+        (0..fitted.keys.len()).filter(|&i| is_number(&fitted.keys[i])).collect();
+    let keys: Vec<Key> = numbers.iter().map(|&i| fitted.keys[i]).collect();
+    let covariance = chosen.precision.as_ref().and_then(|precision| precision.between(&keys));
+    let (Some(c), true) = (covariance, fitted.columns.len() == fitted.keys.len()) else {
+        // as white noise would make it
+        let share = numbers.len() as f64 / samples.max(1) as f64;
+        let square = dot(&fitted.residuals, &fitted.residuals) / fitted.residuals.len().max(1) as f64;
+        return vec![share * square; outputs];
+    };
+    let columns: Vec<Vec<f64>> = numbers
+        .iter()
+        .map(|&i| match &chosen.by {
+            Some(by) => by.colour(&fitted.columns[i]),
+            None => fitted.columns[i].clone(),
+        })
+        .collect();
+    let of = |o: usize| {
+        let part = |i: usize| &columns[i][o * samples..(o + 1) * samples];
+        let pairs = (0..columns.len()).flat_map(|i| (0..columns.len()).map(move |j| (i, j)));
+        pairs.map(|(i, j)| c[(i, j)] * dot(part(i), part(j))).sum::<f64>() / samples.max(1) as f64
+    };
+    (0..outputs).map(|o| of(o).max(0.0)).collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::single_range_in_vec_init)] // a record of one segment
+mod tests {
+    use super::*;
+    use crate::data::Random;
+
+    /// Coloured noise beside a machine that is simulated right, and with a tenth of its input missing.
+    #[test]
+    fn coloured_noise_is_noise_and_a_missing_input_is_none() {
+        let mut random = Random::new(6);
+        let (mut n, mut noise, mut u) = (0.0, vec![], vec![]);
+        for _ in 0..4000 {
+            n = 0.95 * n + random.normal();
+            noise.push(n);
+            u.push(3.0 * random.normal());
+        }
+        let (segments, inputs) = ([0..4000], [u.clone()]);
+        let floor = |left: &[f64]| {
+            let of = Simulated { left, simulated: &u, inputs: &inputs, segments: &segments };
+            independent(&of, 0.01)
+        };
+        let found = floor(&noise).unwrap();
+        let square = dot(&noise, &noise) / 4000.0;
+        assert!((found.std.powi(2) - (square - 0.01)).abs() < 1e-9 && found.doubt < 0.01);
+        let wrong: Vec<f64> = noise.iter().zip(&u).map(|(n, u)| n + 0.1 * u).collect();
+        assert!(floor(&wrong).is_none());
+    }
+}
