@@ -16,6 +16,7 @@ mod variance;
 mod whitener;
 
 pub(crate) use laplace::occam;
+pub(crate) use noise::Autoregressive;
 pub(crate) use prior::{Choices, price, width};
 pub(crate) use stretches::Stretches;
 pub(crate) use tails::Tails;

@@ -36,6 +36,7 @@ impl Context<'_, '_> {
                 let of = Simulated {
                     left: &left,
                     simulated: &chosen.y[o],
+                    change: &[],
                     inputs: &self.joined.drive.inputs,
                     segments: &self.joined.drive.segments,
                 };
@@ -66,7 +67,9 @@ impl Context<'_, '_> {
             let left: Vec<f64> = measured.iter().zip(simulated).map(|(y, s)| y - s).collect();
             let whole = left.len() == count && test.inputs.iter().all(|u| u.len() == count);
             let (inputs, segments) = (&test.inputs[..], &segments[..]);
-            let of = Simulated { left: &left, simulated, inputs, segments };
+            let change: Vec<f64> =
+                simulated.iter().zip(&test.before[o]).map(|(a, b)| a - b).collect();
+            let of = Simulated { left: &left, simulated, change: &change, inputs, segments };
             whole.then(|| independent(&of, excess[o])).flatten()
         };
         let floor = |(o, other): (usize, Option<Floor>)| match other {

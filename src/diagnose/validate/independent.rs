@@ -6,11 +6,15 @@
 //!
 //! ```text
 //! E d^2 = mean over the samples of J C J'       by the covariance C of its numbers
-//! std of d^2 = sqrt(2 nu) r^2 / n               by the test, of nu columns and n samples
+//! std of |W d|^2 / n = sqrt(2 nu) / n           by the test, of nu columns and n samples
 //! ```
+//!
+//! W, an autoregression of r, makes r white. What a model got wrong may lie where the noise is strong: d^2
+//! is taken to be to |W d|^2 / n as it is for what the extension changed, yhat less that of the baseline.
 //!
 //! Ljung, "System Identification", 2nd ed., sections 16.4 (variance of a prediction) and 16.6.
 
+use crate::evidence::Autoregressive;
 use crate::fit::finished::Finished;
 use crate::fit::nuisance::Key;
 use crate::statistics::{Regression, deviation, dot, mean};
@@ -26,6 +30,8 @@ pub(crate) struct Simulated<'a> {
     /// What the model leaves; not a number where nothing is known.
     pub left: &'a [f64],
     pub simulated: &'a [f64],
+    /// What the extension changed of that; empty where it is not asked how well the noise is known.
+    pub change: &'a [f64],
     pub inputs: &'a [Vec<f64>],
     pub segments: &'a [std::ops::Range<usize>],
 }
@@ -47,13 +53,32 @@ pub(crate) fn independent(of: &Simulated<'_>, excess: f64) -> Option<Floor> {
         return None;
     }
     let noise = square - excess;
-    let error = excess.hypot((2.0 * found.freedom).sqrt() * square / n);
+    let error = excess.hypot((2.0 * found.freedom).sqrt() / n * of.hidden(square));
     Some(Floor {
         std: noise.sqrt(),
         method: "what the model leaves, which depends on no input",
         doubt: error / noise,
         excess: Some(excess),
     })
+}
+
+impl Simulated<'_> {
+    /// Mean square of a change over that of the whitened change; `square`, the mean square of what is
+    /// left, where nothing was changed.
+    fn hidden(&self, square: f64) -> f64 {
+        let known = |x: &[f64]| -> Vec<f64> {
+            x.iter().map(|v| if v.is_finite() { *v } else { 0.0 }).collect()
+        };
+        let (left, change) = (known(self.left), known(self.change));
+        let count = self.left.iter().filter(|v| v.is_finite()).count() as f64;
+        let noise = Autoregressive::estimate(&left, self.segments, count);
+        let mut white = vec![0.0; change.len()];
+        if change.len() == left.len() {
+            noise.whiten(&change, self.segments, &mut white);
+        }
+        let ratio = dot(&change, &change) / dot(&white, &white);
+        if ratio.is_finite() { ratio } else { square }
+    }
 }
 
 /// A series in units of its deviation, its square and its signed square, so many samples late.
@@ -119,12 +144,13 @@ mod tests {
         }
         let (segments, inputs) = ([0..4000], [u.clone()]);
         let floor = |left: &[f64]| {
-            let of = Simulated { left, simulated: &u, inputs: &inputs, segments: &segments };
+            let (inputs, segments, change) = (&inputs[..], &segments[..], &u[..]);
+            let of = Simulated { left, simulated: &u, change, inputs, segments };
             independent(&of, 0.01)
         };
         let found = floor(&noise).unwrap();
         let square = dot(&noise, &noise) / 4000.0;
-        assert!((found.std.powi(2) - (square - 0.01)).abs() < 1e-9 && found.doubt < 0.01);
+        assert!((found.std.powi(2) - (square - 0.01)).abs() < 1e-9 && found.doubt < 0.02);
         let wrong: Vec<f64> = noise.iter().zip(&u).map(|(n, u)| n + 0.1 * u).collect();
         assert!(floor(&wrong).is_none());
     }
