@@ -10,7 +10,9 @@ use crate::data::Record;
 use crate::findings::context::Context;
 use crate::findings::series::TestSeries;
 use crate::fit::finished::Finished;
-use crate::validate::independent::{Simulated, excess, independent};
+use crate::fit::nuisance::Key;
+use crate::fit::problem::Part;
+use crate::validate::independent::{Simulated, independent};
 use crate::validate::noise_floor::{Floor, Left, NoiseFloor, REPEATED, predicted, repeated};
 
 impl Context<'_, '_> {
@@ -23,7 +25,7 @@ impl Context<'_, '_> {
         used: &[Record],
     ) -> BTreeMap<String, NoiseFloor> {
         let problem = self.problem;
-        let excess = self.excess(chosen);
+        let share = self.share(chosen);
         let left = self.off(&chosen.y);
         let of = |o: usize| {
             let periods = used.first().filter(|_| used.len() == 1).and_then(Record::periods);
@@ -40,7 +42,7 @@ impl Context<'_, '_> {
                     inputs: &self.joined.drive.inputs,
                     segments: &self.joined.drive.segments,
                 };
-                independent(&of, excess[o])
+                independent(&of, share)
             };
             repeated.or_else(own).or_else(|| predicted(Left { r: &off[o], drives }))
         };
@@ -57,7 +59,7 @@ impl Context<'_, '_> {
         test: &TestSeries,
         others: Vec<Option<Floor>>,
     ) -> Vec<Option<Floor>> {
-        let excess = self.excess(chosen);
+        let share = self.share(chosen);
         let ends = test.begins.iter().skip(1).copied();
         let count = test.measured.iter().map(Vec::len).max().unwrap_or(0);
         let segments: Vec<_> =
@@ -70,7 +72,7 @@ impl Context<'_, '_> {
             let change: Vec<f64> =
                 simulated.iter().zip(&test.before[o]).map(|(a, b)| a - b).collect();
             let of = Simulated { left: &left, simulated, change: &change, inputs, segments };
-            whole.then(|| independent(&of, excess[o])).flatten()
+            whole.then(|| independent(&of, share)).flatten()
         };
         let floor = |(o, other): (usize, Option<Floor>)| match other {
             Some(floor) if floor.method == REPEATED => Some(floor),
@@ -79,9 +81,10 @@ impl Context<'_, '_> {
         others.into_iter().enumerate().map(floor).collect()
     }
 
-    /// Mean square, in the outputs' units, of what the errors of the numbers do.
-    fn excess(&self, chosen: &Finished) -> Vec<f64> {
-        let scaled = excess(chosen, self.problem.y.len());
-        scaled.iter().zip(&self.problem.scale).map(|(e, scale)| e * scale * scale).collect()
+    /// Numbers that were fitted, initial states apart, which are forgotten, over the samples.
+    fn share(&self, chosen: &Finished) -> f64 {
+        let is_number = |key: &&Key| !matches!(key, Key::Start(..));
+        let numbers = chosen.fitted.keys.iter().filter(is_number).count();
+        numbers as f64 / self.problem.samples(Part::All).count().max(1) as f64
     }
 }

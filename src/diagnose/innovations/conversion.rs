@@ -7,7 +7,6 @@ use crate::likelihood::{Component, Explanation, NamedCause, Noise, Predictor};
 use nalgebra::{DMatrix, DVector};
 
 use crate::candidates::candidate::{Candidate, Wire};
-use crate::candidates::library::{Allowed, library};
 use crate::criteria::LOOK_ALIKE;
 use crate::effect::{Role, curve};
 use crate::error::DiagnoseError;
@@ -28,28 +27,27 @@ struct Law {
     covariance: DMatrix<f64>,
 }
 
-/// An explanation as a finished track; `None` where a law of it is not in the library, or the model
+/// An explanation as a finished track; `None` where a law of it is not in `known`, the library, or the model
 /// cannot be run freely.
 pub(super) fn finished(
     prepared: &Prepared<'_>,
-    allowed: &Allowed,
+    known: &[Arc<Candidate>],
     (of, found): (&Predictor, &Explanation),
 ) -> Option<Finished> {
     let problem = &prepared.problem;
-    let known = library(problem, &prepared.nominal, &prepared.start, vec![], allowed, &());
     let theta = &prepared.start.theta;
     let (mut laws, mut slots) = (vec![], vec![]);
     for cause in &found.causes {
-        let own = laws_of(&known, cause, theta)?;
-        let alike = alike(&known, cause);
+        let own = laws_of(known, cause, theta)?;
+        let alike = alike(known, cause);
         for (number, law) in own.iter().enumerate() {
             let mut alike = alike.clone();
-            alike.extend(in_disguise(&known, cause, number));
+            alike.extend(in_disguise(known, cause, number));
             slots.push(slot(&law.added.cause, cause, &alike));
         }
         laws.extend(own);
     }
-    let withdrawn = found.withdrawn.iter().filter_map(|cause| laws_of(&known, cause, theta));
+    let withdrawn = found.withdrawn.iter().filter_map(|cause| laws_of(known, cause, theta));
     let withdrawn = withdrawn.flatten().map(|law| law.added).collect();
     let mut keys = vec![];
     let mut at = vec![];

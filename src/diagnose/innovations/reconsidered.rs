@@ -4,11 +4,13 @@ use crate::likelihood::{Explanation, NoiseModel, Predictor};
 
 use super::compete::{Rivals, extended, left, predictor, step};
 use super::conversion::{carried_over, finished};
-use crate::candidates::library::Allowed;
+use crate::candidates::candidate::Wire;
+use crate::candidates::library::{Allowed, library};
 use crate::criteria::LEAVES;
 use crate::error::DiagnoseError;
 use crate::fit::finished::Finished;
-use crate::fit::problem::Part;
+use crate::evidence::Choices;
+use crate::fit::problem::{Added, Part};
 use crate::fit::refit::MANY;
 use crate::prepare::input_dependence::{DEPENDS, dependence};
 use crate::prepare::prepared::Prepared;
@@ -174,12 +176,13 @@ fn by_innovations(
         NoiseModel::FreeRunAutoregressive(_) => None,
     });
     let found = base.explain(most, &held, noise, &|| watch.stopped()).ok()?;
-    let of_answer = rivals.best() - taken(&base, answer);
+    let known = library(problem, &prepared.nominal, &prepared.start, vec![], allowed, &());
+    let of_answer = rivals.best() - taken(&base, answer, Choices::of(&known).laws);
     let none = found.causes.is_empty() && is_bare;
     if !none && found.criterion() <= of_answer {
         return None;
     }
-    let mut answer = finished(prepared, allowed, (&base, &found))?;
+    let mut answer = finished(prepared, &known, (&base, &found))?;
     answer.dependence = depends(prepared, (&base, &found), &answer)?;
     if none && answer.dependence > DEPENDS {
         return None;
@@ -215,11 +218,18 @@ fn count_moved(answer: &Finished) -> usize {
     answer.moved.len().max(usize::from(answer.moved_along_ridge))
 }
 
-/// What the causes of an answer take: their numbers, and what they were chosen from.
-fn taken(of: &Predictor, answer: &Finished) -> f64 {
+/// What the causes of an answer take: their numbers, and what they were chosen from: a place among all, and
+/// a law among `laws` of its place, as an explanation by innovations pays for it.
+fn taken(of: &Predictor, answer: &Finished, laws: usize) -> f64 {
     let model = &answer.fitted.model;
     let numbers: usize = model.added.iter().map(|added| added.cause.unknowns()).sum();
     let numbers = (numbers + answer.moved.len()) as f64;
-    let chosen = (model.added.len() - model.known() + count_moved(answer)) as f64;
-    0.5 * numbers * (of.samples() as f64).ln() + chosen * (of.places_count() as f64).ln()
+    let added = &model.added[model.known()..];
+    let is_new = |i: &usize| !added[..*i].iter().any(|a| a.cause.same_place(&added[*i].cause));
+    let is_law = |added: &&Added| !matches!(added.cause.wire, Wire::Parameter(_));
+    let places = ((0..added.len()).filter(is_new).count() + count_moved(answer)) as f64;
+    let chosen = added.iter().filter(is_law).count() as f64;
+    0.5 * numbers * (of.samples() as f64).ln()
+        + places * (of.places_count() as f64).ln()
+        + chosen * (laws as f64).ln()
 }

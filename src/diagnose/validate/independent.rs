@@ -2,21 +2,19 @@
 //!
 //! Where the score test of a dynamic regression ([`Regression`]) does not find what a model leaves,
 //! r = y - yhat, to depend on inputs and simulated outputs, r is noise, whatever its colour, and the
-//! model's own error, of which two things are known:
+//! model's own error d, of which two things are known, W being an autoregression that makes r white:
 //!
 //! ```text
-//! E d^2 = mean over the samples of J C J'       by the covariance C of its numbers
-//! std of |W d|^2 / n = sqrt(2 nu) / n           by the test, of nu columns and n samples
+//! E |W d|^2 / n = p / N                      of p numbers that were fitted to N samples
+//! std of |W d|^2 / n = sqrt(2 nu) / n        by the test, of nu columns and n samples
 //! ```
 //!
-//! W, an autoregression of r, makes r white. What a model got wrong may lie where the noise is strong: d^2
-//! is taken to be to |W d|^2 / n as it is for what the extension changed, yhat less that of the baseline.
+//! What a model got wrong may lie where the noise is strong: d^2 is taken to be to |W d|^2 / n as it is
+//! for what the extension changed, yhat less that of the baseline.
 //!
-//! Ljung, "System Identification", 2nd ed., sections 16.4 (variance of a prediction) and 16.6.
+//! Ljung, "System Identification", 2nd ed., sections 16.4 (p / N) and 16.6.
 
 use crate::evidence::Autoregressive;
-use crate::fit::finished::Finished;
-use crate::fit::nuisance::Key;
 use crate::statistics::{Regression, deviation, dot, mean};
 use crate::validate::noise_floor::Floor;
 
@@ -36,9 +34,9 @@ pub(crate) struct Simulated<'a> {
     pub segments: &'a [std::ops::Range<usize>],
 }
 
-/// The noise of an output where what a model leaves of it depends on nothing; `excess` is the mean square
-/// of what the errors of its numbers do.
-pub(crate) fn independent(of: &Simulated<'_>, excess: f64) -> Option<Floor> {
+/// The noise of an output where what a model leaves of it depends on nothing; `share` is the number of
+/// numbers that were fitted over that of the samples.
+pub(crate) fn independent(of: &Simulated<'_>, share: f64) -> Option<Floor> {
     let tested: Vec<Vec<f64>> = curves(of.simulated, 0)
         .into_iter()
         .chain((0..LAGS).flat_map(|lag| of.inputs.iter().flat_map(move |u| curves(u, lag))))
@@ -49,11 +47,13 @@ pub(crate) fn independent(of: &Simulated<'_>, excess: f64) -> Option<Floor> {
     let found = regression.test()?;
     let known: Vec<f64> = of.left.iter().copied().filter(|v| v.is_finite()).collect();
     let (n, square) = (known.len() as f64, dot(&known, &known) / known.len().max(1) as f64);
-    if found.p_value < LEVEL || !(square > 0.0) || !(excess < square) {
+    if found.p_value < LEVEL || !(square > 0.0) {
         return None;
     }
-    let noise = square - excess;
-    let error = excess.hypot((2.0 * found.freedom).sqrt() / n * of.hidden(square));
+    let hidden = of.hidden(square);
+    let excess = (share * hidden).min(square);
+    let noise = (square - excess).max(f64::MIN_POSITIVE);
+    let error = excess.hypot((2.0 * found.freedom).sqrt() / n * hidden);
     Some(Floor {
         std: noise.sqrt(),
         method: "what the model leaves, which depends on no input",
@@ -95,37 +95,6 @@ pub(super) fn curves(of: &[f64], lag: usize) -> [Vec<f64>; 3] {
     [curve(|z| z), curve(|z| z * z), curve(|z| z * z.abs())]
 }
 
-/// Mean square of what the errors of a fit's numbers do to each output, in units of the residuals: E d^2
-/// on the data that were fitted; initial states, which are forgotten, apart.
-pub(crate) fn excess(chosen: &Finished, outputs: usize) -> Vec<f64> {
-    let fitted = &chosen.fitted;
-    let samples = fitted.residuals.len() / outputs.max(1);
-    let is_number = |key: &Key| !matches!(key, Key::Start(..));
-    let numbers: Vec<usize> =
-        (0..fitted.keys.len()).filter(|&i| is_number(&fitted.keys[i])).collect();
-    let keys: Vec<Key> = numbers.iter().map(|&i| fitted.keys[i]).collect();
-    let covariance = chosen.precision.as_ref().and_then(|precision| precision.between(&keys));
-    let (Some(c), true) = (covariance, fitted.columns.len() == fitted.keys.len()) else {
-        // as white noise would make it
-        let share = numbers.len() as f64 / samples.max(1) as f64;
-        let square = dot(&fitted.residuals, &fitted.residuals) / fitted.residuals.len().max(1) as f64;
-        return vec![share * square; outputs];
-    };
-    let columns: Vec<Vec<f64>> = numbers
-        .iter()
-        .map(|&i| match &chosen.by {
-            Some(by) => by.colour(&fitted.columns[i]),
-            None => fitted.columns[i].clone(),
-        })
-        .collect();
-    let of = |o: usize| {
-        let part = |i: usize| &columns[i][o * samples..(o + 1) * samples];
-        let pairs = (0..columns.len()).flat_map(|i| (0..columns.len()).map(move |j| (i, j)));
-        pairs.map(|(i, j)| c[(i, j)] * dot(part(i), part(j))).sum::<f64>() / samples.max(1) as f64
-    };
-    (0..outputs).map(|o| of(o).max(0.0)).collect()
-}
-
 #[cfg(test)]
 #[allow(clippy::single_range_in_vec_init)] // a record of one segment
 mod tests {
@@ -146,11 +115,14 @@ mod tests {
         let floor = |left: &[f64]| {
             let (inputs, segments, change) = (&inputs[..], &segments[..], &u[..]);
             let of = Simulated { left, simulated: &u, change, inputs, segments };
-            independent(&of, 0.01)
+            independent(&of, 1e-3)
         };
         let found = floor(&noise).unwrap();
         let square = dot(&noise, &noise) / 4000.0;
-        assert!((found.std.powi(2) - (square - 0.01)).abs() < 1e-9 && found.doubt < 0.02);
+        let (excess, noise_square) = (found.excess.unwrap(), found.std.powi(2));
+        assert!((noise_square + excess - square).abs() < 1e-9 && found.doubt < 0.02);
+        // a white change is as visible as the innovations are small
+        assert!(excess < 2e-3, "{excess}");
         let wrong: Vec<f64> = noise.iter().zip(&u).map(|(n, u)| n + 0.1 * u).collect();
         assert!(floor(&wrong).is_none());
     }
