@@ -120,10 +120,16 @@ fn rates() {
     }
     seconds.sort_by(f64::total_cmp);
     let off = (squares / f64::from(levels)).sqrt();
-    println!("| friction named | nothing else | m | c | k covered | all three | level off, RMS | level covered | median s |");
+    println!(
+        "| friction named | nothing else | m | c | k covered | all three | level off, RMS | level covered | median s |"
+    );
     println!("| --- | --- | --- | --- | --- | --- | --- | --- | --- |");
     println!(
         "| {friction} of {seeds} | {alone} | {} | {} | {} | {all} | {:.1} % | {within} of {levels} | {:.1} |",
-        covered[0], covered[1], covered[2], 100.0 * off, seconds[seconds.len() / 2]
+        covered[0],
+        covered[1],
+        covered[2],
+        100.0 * off,
+        seconds[seconds.len() / 2]
     );
 }

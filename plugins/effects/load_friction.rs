@@ -47,8 +47,12 @@ impl Effect for LoadFriction {
     }
 
     fn title(&self, named: &Named) -> String {
-        if named.bare { "A jump at zero that grows" } else { "Dry friction that grows with the load" }
-            .into()
+        if named.bare {
+            "A jump at zero that grows"
+        } else {
+            "Dry friction that grows with the load"
+        }
+        .into()
     }
 
     #[inline(always)]

@@ -10,7 +10,7 @@ use super::fit::found::Found;
 use super::fit::hypothesis::{Moved, Track};
 use super::fit::nuisance::Nuisance;
 use super::fit::problem::{Grain, Model, Problem};
-use super::fit::refit::{Fitted, MANY, Refit, refit};
+use super::fit::refit::{Fitted, MANY, Refit, Stop, refit_until};
 use super::prepare::input_dependence::dependence;
 use super::prepare::operating_range::Nominal;
 use super::search::{self, Searched};
@@ -35,6 +35,9 @@ impl<'a, 'b> Tracks<'a, 'b> {
             search::search(self.problem, nominal, allowed, most, self.start, watch)?;
         let track = if free { Track::ParametersFree } else { Track::ParametersTrusted };
         let chosen = self.finish(track, found, nuisance)?;
+        if watch.stopped() {
+            return Some(chosen);
+        }
         let chosen = self.off_the_ridge(chosen)?;
         let undetermined = self.undetermined(&chosen);
         Some(self.doubting(Finished { undetermined, ..chosen }))
@@ -47,7 +50,10 @@ impl<'a, 'b> Tracks<'a, 'b> {
         model: &Model,
     ) -> Option<(Fitted, Arc<Vec<Vec<f64>>>)> {
         let model = std::slice::from_ref(model);
-        let fitted = refit(self.problem, nuisance, model, Refit::last()).swap_remove(0)?;
+        let asked = || self.watch.stopped();
+        let stop = Stop::Keep(&asked);
+        let fitted =
+            refit_until(self.problem, nuisance, model, Refit::last(), stop).swap_remove(0)?;
         let y = self.problem.simulate(&fitted.model, Grain::Fine)?;
         Some((fitted, y))
     }

@@ -269,7 +269,9 @@ fn causes_are_explained_together_and_the_rest_is_noise() {
 fn rates() {
     let seeds: u64 = std::env::var("SEEDS").ok().and_then(|s| s.parse().ok()).unwrap_or(20);
     let only = std::env::var("ONLY").unwrap_or_default();
-    println!("| plant | nothing hidden: named | effect named first | first or among look-alikes | seconds |");
+    println!(
+        "| plant | nothing hidden: named | effect named first | first or among look-alikes | seconds |"
+    );
     println!("| --- | --- | --- | --- | --- |");
     for case in cases().iter().filter(|case| case.name.contains(&only)) {
         let size = case.as_large_as_noise();

@@ -45,7 +45,7 @@ impl Context<'_, '_> {
         causes: &mut [Cause],
     ) -> Option<Note> {
         let named = chosen.causes() - chosen.fitted.model.known() + chosen.moved.len();
-        if named == 0 && !(chosen.dependence > DEPENDS) {
+        if from.watch.stopped() || named == 0 && !(chosen.dependence > DEPENDS) {
             return None;
         }
         let mut base = from.start.clone();

@@ -6,6 +6,8 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use crate::data::Record;
 use crate::findings::context::Context;
 use crate::findings::series::TestSeries;
@@ -33,8 +35,11 @@ impl Context<'_, '_> {
             let repeated = periods.and_then(|p| repeated(measured, p.samples, p.samples / 10));
             let own = || {
                 let counts = problem.weight[o].iter().map(|w| *w > 0.0);
-                let left: Vec<f64> =
-                    left[o].iter().zip(counts).map(|(r, c)| if c { *r } else { f64::NAN }).collect();
+                let left: Vec<f64> = left[o]
+                    .iter()
+                    .zip(counts)
+                    .map(|(r, c)| if c { *r } else { f64::NAN })
+                    .collect();
                 let of = Simulated {
                     left: &left,
                     simulated: &chosen.y[o],
@@ -46,7 +51,7 @@ impl Context<'_, '_> {
             };
             repeated.or_else(own).or_else(|| predicted(Left { r: &off[o], drives }))
         };
-        let signals = problem.base.signals.outputs.iter().enumerate();
+        let signals = problem.base.signals.outputs.par_iter().enumerate();
         let entry = |floor: Floor| NoiseFloor { std: floor.std, method: floor.method.into() };
         signals.filter_map(|(o, signal)| Some((signal.name.clone(), entry(of(o)?)))).collect()
     }
@@ -78,7 +83,7 @@ impl Context<'_, '_> {
             Some(floor) if floor.method == REPEATED => Some(floor),
             other => own(o).or(other),
         };
-        others.into_iter().enumerate().map(floor).collect()
+        others.into_par_iter().enumerate().map(floor).collect()
     }
 
     /// Numbers that were fitted, initial states apart, which are forgotten, over the samples.

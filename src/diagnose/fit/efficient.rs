@@ -19,7 +19,7 @@ use crate::fit::covariance::Precision;
 use crate::fit::finished::Finished;
 use crate::fit::nuisance::{Key, Nuisance, get};
 use crate::fit::problem::{Grain, Model, Part, Problem};
-use crate::fit::refit::{Fitted, MANY, Refit, refit, refit_whitened};
+use crate::fit::refit::{Fitted, MANY, Refit, Stop, refit, refit_whitened};
 
 /// Normal score beyond which the two fits differ: a test of size 1 %.
 const DIFFERENT: f64 = 2.326;
@@ -40,7 +40,7 @@ pub(crate) fn efficient(
     nuisance: &Nuisance,
     plain: &Fitted,
     errors: &Precision,
-    stop: &dyn Fn() -> bool,
+    stop: &(dyn Fn() -> bool + Sync),
 ) -> Option<Efficient> {
     let by = Stretches::new(problem, Part::All).estimate(&plain.residuals).whitener;
     if !by.is_coloured() || nuisance.segments >= MANY {
@@ -48,7 +48,8 @@ pub(crate) fn efficient(
     }
     let (models, filters) = (std::slice::from_ref(&plain.model), std::slice::from_ref(&by));
     let fitted =
-        refit_whitened(problem, nuisance, models, filters, Refit::last(), stop).swap_remove(0)?;
+        refit_whitened(problem, nuisance, models, filters, Refit::last(), Stop::Discard(stop))
+            .swap_remove(0)?;
     if difference(plain, &fitted, errors)? > DIFFERENT {
         return None;
     }
@@ -98,7 +99,7 @@ impl Finished {
         match &self.by {
             Some(by) => {
                 let filters = vec![by.clone(); models.len()];
-                refit_whitened(problem, nuisance, models, &filters, how, &|| false)
+                refit_whitened(problem, nuisance, models, &filters, how, Stop::Never)
             }
             None => refit(problem, nuisance, models, how),
         }

@@ -22,6 +22,17 @@ const WORTH: f64 = 0.97;
 /// Fall of twice the logarithm of the likelihood below which an iteration was the last one.
 const MATTERS: f64 = 0.02;
 
+/// What becomes of fits where somebody asks to stop.
+#[derive(Clone, Copy)]
+pub(crate) enum Stop<'a> {
+    /// They go on.
+    Never,
+    /// They are given up.
+    Discard(&'a (dyn Fn() -> bool + Sync)),
+    /// They end where they have come to.
+    Keep(&'a (dyn Fn() -> bool + Sync)),
+}
+
 /// Fits many models at once, each from where it stands; `None` where a model cannot even be
 /// simulated at its start.
 pub(crate) fn refit(
@@ -30,7 +41,18 @@ pub(crate) fn refit(
     models: &[Model],
     how: Refit,
 ) -> Vec<Option<Fitted>> {
-    let mut fitted = once(problem, nuisance, models, how, &|_, r| r, &|| false);
+    refit_until(problem, nuisance, models, how, Stop::Never)
+}
+
+/// The same, which may be stopped.
+pub(crate) fn refit_until(
+    problem: &Problem<'_>,
+    nuisance: &Nuisance,
+    models: &[Model],
+    how: Refit,
+    stop: Stop<'_>,
+) -> Vec<Option<Fitted>> {
+    let mut fitted = once(problem, nuisance, models, how, &|_, r| r, stop);
     if nuisance.segments < MANY {
         return fitted;
     }
@@ -42,8 +64,7 @@ pub(crate) fn refit(
         let moved = of.into_iter().zip(moved).filter_map(|(m, moved)| Some((m, moved?)));
         let (of, moved): (Vec<usize>, Vec<Model>) = moved.unzip();
         open.clear();
-        for (m, again) in
-            of.into_iter().zip(once(problem, nuisance, &moved, how, &|_, r| r, &|| false))
+        for (m, again) in of.into_iter().zip(once(problem, nuisance, &moved, how, &|_, r| r, stop))
         {
             let (Some(again), Some(before)) = (again, &fitted[m]) else { continue };
             let (sum, least) = (again.squares(), before.squares());
@@ -62,14 +83,14 @@ pub(crate) fn refit(
 }
 
 /// Fits many models at once, each to the minimum that is next, in the metric of its own disturbance:
-/// residuals and columns of the fits are whitened. None of them where somebody asks to stop.
+/// residuals and columns of the fits are whitened.
 pub(crate) fn refit_whitened(
     problem: &Problem<'_>,
     nuisance: &Nuisance,
     models: &[Model],
     whiteners: &[Arc<dyn Whitener>],
     how: Refit,
-    stop: &dyn Fn() -> bool,
+    stop: Stop<'_>,
 ) -> Vec<Option<Fitted>> {
     once(problem, nuisance, models, how, &|m, r| whiteners[m].whiten(&r), stop)
 }
@@ -81,7 +102,7 @@ fn once(
     models: &[Model],
     how: Refit,
     filter: &(dyn Fn(usize, Vec<f64>) -> Vec<f64> + Sync),
-    stop: &dyn Fn() -> bool,
+    stop: Stop<'_>,
 ) -> Vec<Option<Fitted>> {
     let (part, span) = (how.part(), how.span());
     let residuals = problem.samples(part).count() * problem.y.len();
@@ -107,8 +128,12 @@ fn once(
         model
     };
     loop {
-        if stop() {
-            return vec![None; models.len()];
+        match stop {
+            Stop::Discard(asked) if asked() => return vec![None; models.len()],
+            Stop::Keep(asked) if asked() && runs.iter().all(|(_, run)| run.squares.is_finite()) => {
+                break;
+            }
+            _ => {}
         }
         let mut jobs = vec![];
         let mut counts = vec![];

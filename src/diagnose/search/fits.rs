@@ -8,7 +8,7 @@ use super::beam::Fit;
 use crate::evidence::{Choices, NoiseModel, Whitener, occam, price, width};
 use crate::fit::nuisance::{Key, Nuisance, get};
 use crate::fit::problem::{Grain, Model, Problem, Span};
-use crate::fit::refit::{Fitted, Refit, refit_whitened};
+use crate::fit::refit::{Fitted, Refit, Stop, refit_whitened};
 use crate::optimise::Settings;
 
 /// A model to be fitted, and the disturbance to weigh its residual by.
@@ -33,8 +33,9 @@ pub(super) struct Judge<'a, 'b> {
     pub free: bool,
     pub disturbance: &'a dyn NoiseModel,
     pub choices: Choices,
-    /// Whether somebody asks to stop: what is not fitted then is left out.
-    pub stop: &'a (dyn Fn() -> bool + Sync),
+    /// Whether somebody asks to stop: what is not fitted then is left out, or ends where it has come to
+    /// where nothing is known yet.
+    pub stop: Stop<'a>,
 }
 
 impl Judge<'_, '_> {

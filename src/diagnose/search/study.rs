@@ -13,7 +13,7 @@ use crate::evidence::{Choices, NoiseModel, Stretches};
 use crate::fit::found::LeftOut;
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Model, Part, Problem, Simulated, Span};
-use crate::fit::refit::Fitted;
+use crate::fit::refit::{Fitted, Stop};
 use crate::fit::segment_restart::restarted;
 use crate::prepare::input_dependence::dependence;
 use crate::prepare::operating_range::Nominal;
@@ -95,9 +95,14 @@ impl<'a, 'b> Study<'a, 'b> {
     /// known.
     pub fn fit(&self, free: bool, wishes: &[Wish], iterations: usize) -> Vec<Fit> {
         let (problem, nuisance) = (&*self.problem, self.nuisance(free));
-        let known = !self.concludes && self.beam.best().is_some();
+        let asked = || self.watch.stopped();
+        let stop = match self.beam.best() {
+            None => Stop::Keep(&asked),
+            Some(_) if self.concludes => Stop::Never,
+            Some(_) => Stop::Discard(&asked),
+        };
         let judge = Judge {
-            stop: &|| known && self.watch.stopped(),
+            stop,
             problem,
             nuisance,
             free,

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use rayon::prelude::*;
+
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Metrics, Run};
 use crate::findings::series::TestSeries;
@@ -132,6 +134,7 @@ impl TestData {
     ) -> Vec<Option<Floor>> {
         let signals = system.signals();
         (0..signals.outputs.len())
+            .into_par_iter()
             .map(|o| {
                 let whole =
                     self.records.first().filter(|_| !matches!(self.counted, Counted::From(_)));

@@ -195,10 +195,7 @@ fn may_be(law: &dyn CandidateEffect, coordinate: &Signal, view: &View) -> bool {
         }
         Needs::NoVelocity => !coordinate.quantity.as_ref().is_some_and(Quantity::is_velocity),
         Needs::AngleOrTime => coordinate.unit == "rad",
-        Needs::VelocityUnderLoad
-        | Needs::CoordinateWithRate
-        | Needs::Motion
-        | Needs::Time => false,
+        Needs::VelocityUnderLoad | Needs::CoordinateWithRate | Needs::Motion | Needs::Time => false,
     };
     // what may stand in a channel: a gain of a path is a linear law there
     needs
