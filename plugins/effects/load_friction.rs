@@ -36,7 +36,7 @@ impl Effect for LoadFriction {
         .made_for(vec![any(), any()])
         .sign(SignRule::Opposing { polarity: 1 })
         .friction()
-        .stated_as(Size::Growing { alone: "level", by: "rise" })
+        .stated_as(Size::Growing { unloaded: "level", by: "rise" })
         .smoothing_width("width")
         .rank(4)
     }

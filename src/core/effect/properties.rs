@@ -23,7 +23,7 @@ pub enum Size {
     /// As a size by itself, and what is added per unit of the second coordinate.
     Growing {
         /// Name of the coefficient without it.
-        alone: &'static str,
+        unloaded: &'static str,
         /// Name of the coefficient per unit of it.
         by: &'static str,
     },

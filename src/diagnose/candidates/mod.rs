@@ -17,4 +17,5 @@ pub(crate) mod products;
 pub(crate) mod screen;
 pub(crate) mod smoothing;
 pub(crate) mod stiffness;
+mod stores;
 pub(crate) mod sums;

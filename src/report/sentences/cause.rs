@@ -44,7 +44,7 @@ pub fn is_resolved(cause: &Cause) -> bool {
     }
     let stated = match wording.size {
         Size::Wave { sine, cosine, .. } => amplitude(cause, sine, cosine),
-        Size::Growing { alone, by } => return is_either_resolved(cause, [alone, by]),
+        Size::Growing { unloaded, by } => return is_either_resolved(cause, [unloaded, by]),
         _ => headline_value(cause).map(|v| match wording.site {
             Site::Parameter => (v.value - wording.nominal.unwrap_or(0.0), v.std_error),
             _ => (v.value, v.std_error),
@@ -151,7 +151,7 @@ fn size(cause: &Cause) -> String {
     match wording.size {
         Size::Wave { order, sine, cosine } => wave(cause, order, sine, cosine),
         Size::Factor(name) => factor(cause, name),
-        Size::Growing { alone, by } => growing(cause, alone, by),
+        Size::Growing { unloaded, by } => growing(cause, unloaded, by),
         Size::First | Size::Total(_) => match headline_value(cause) {
             Some(v) if wording.first.is_some() => format!(", {}", first(cause, v)),
             _ => {
@@ -166,12 +166,12 @@ fn size(cause: &Cause) -> String {
 }
 
 /// `, 0.31 +- 0.02 N and 0.120 +- 0.004 of load`.
-fn growing(cause: &Cause, alone: &str, by: &str) -> String {
+fn growing(cause: &Cause, unloaded: &str, by: &str) -> String {
     let find = |name: &str| cause.parameters.iter().find(|v| v.name == name);
-    let (Some(alone), Some(by)) = (find(alone), find(by)) else { return String::new() };
+    let (Some(unloaded), Some(by)) = (find(unloaded), find(by)) else { return String::new() };
     let magnitude = |v: &Value| interval(v.value.abs(), v.std_error, &v.unit);
     let load = cause.also_of.first().map_or("the load", String::as_str);
-    format!(", {} and {} of {load}", magnitude(alone), magnitude(by))
+    format!(", {} and {} of {load}", magnitude(unloaded), magnitude(by))
 }
 
 /// A coefficient with its sign in words where there are any.
