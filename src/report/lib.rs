@@ -204,11 +204,11 @@ impl<'a> Report<'a> {
             ));
         }
         let gain = &finding.gain;
-        let [low, high] = gain.interval95;
+        let [low, high] = sentences::shares(gain.interval95);
         page.element("p", "note", &format!(
-            "{:.1} % of the mean square error above the noise floor is gone (95 % interval {:.1} to {:.1} %); \
+            "{:.1} % of the mean square error above the noise floor is gone (95 % interval {low} to {high} %); \
              RMSE over all outputs times {}.",
-            100.0 * gain.error_removed, 100.0 * low, 100.0 * high, number(gain.test_rmse_ratio, None),
+            100.0 * gain.error_removed, number(gain.test_rmse_ratio, None),
         ));
         if let Some(promise) = finding.false_discovery.as_ref().filter(|f| f.confirmed > 0) {
             page.element("p", "note", &format!(

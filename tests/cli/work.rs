@@ -112,7 +112,8 @@ fn diagnose_only_what_is_asked_for() {
         let effect = cause["effect"].as_str().unwrap();
         assert!(["drag", "cubic", "parameter"].contains(&effect), "{cause}");
     }
-    let without = "--json --without coulomb_friction stribeck_friction --max-causes 1";
+    let without =
+        "--json --without coulomb_friction stribeck_friction load_friction --max-causes 1";
     let document = diagnosed(&folder, without).exits(0).json();
     assert!(!document["causes"].to_string().contains("_friction"), "{document:#}");
 }

@@ -22,7 +22,8 @@ impl Builder<'_, '_> {
             let signal = &base.sources.entries[load].0;
             let is_force = !unit.is_empty() && signal.unit == *unit && !self.is_velocity(load);
             let most = self.nominal.series(load).iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-            if !is_force || !(most > 0.0 && most.is_finite()) || Some(load) == spot.source {
+            let may_be = is_force && most > 0.0 && most.is_finite();
+            if !may_be || Some(load) == spot.source {
                 continue;
             }
             let first = self.found.len();

@@ -79,10 +79,16 @@ pub fn rmse(finding: &Finding, name: &str, before: &Metrics, after: &Metrics) ->
     )
 }
 
+/// An interval of shares in per cent, to digits that tell its lower end from all of it.
+pub fn shares(interval: [f64; 2]) -> [String; 2] {
+    let digits = if interval[0] > 0.999 && interval[0] < 1.0 { 3 } else { 1 };
+    interval.map(|share| format!("{:.digits$}", 100.0 * share))
+}
+
 /// The share of the removable error that is gone, with its interval; none where nothing was added.
 pub fn gain(finding: &Finding) -> Option<String> {
     finding.in_the_machine().next()?;
-    let [low, high] = finding.gain.interval95.map(|share| format!("{:.1}", 100.0 * share));
+    let [low, high] = shares(finding.gain.interval95);
     Some(format!(
         "The extended model removes {} of the removable error of the test data (95 % interval {low} to \
          {high} %).",
