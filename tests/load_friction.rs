@@ -4,8 +4,10 @@
 //! The records are made by Runge-Kutta steps of their own, not by the program's engine.
 
 use lacuna::data::{Record, noise};
-use lacuna::diagnose::{Diagnosis, Finding};
+use lacuna::diagnose::{Diagnosis, Finding, Note};
 use lacuna::file::{Format, parse};
+
+use super::disturbed::plants::{Sizes, excitation, simulate, with};
 
 /// An arm behind a gear: J w' = u - b w - k sin(q).
 const ARM: &str = r#"
@@ -95,4 +97,21 @@ fn friction_that_does_not_is_dry_friction() {
     let said = format!("{:#?}", finding.causes);
     assert_eq!(finding.causes[0].effect, "coulomb_friction", "{said}");
     assert_eq!(finding.causes.len(), 1, "{said}");
+}
+
+/// The same where the arm itself is disturbed: a free run drifts, and the innovations of a predictor tell.
+#[test]
+fn it_is_named_beside_noise_inside_the_plant() {
+    let laws = "into = \"on_arm\"\nof = \"rate\"\nalso_of = [\"load\"]\n\
+                effect.load_friction = { level = -0.03, rise = -0.2, width = 0.1 }";
+    let machine = with(ARM, laws);
+    let drive = excitation(N, STEP, 0.35, 5);
+    let noise = Sizes { white: vec![0.03], measurement: vec![2e-3], ..Sizes::default() };
+    let record = simulate(&machine, &drive, &noise, 6);
+    let finding = diagnosed(&record);
+    let said = lacuna::report::sentences::summary(&finding);
+    assert!(finding.notes.iter().any(|note| matches!(note, Note::Inside { .. })), "{said}");
+    let cause = &finding.causes[0];
+    assert_eq!((&cause.effect[..], &cause.into[..]), ("load_friction", "on_arm"), "{said}");
+    assert_eq!(cause.also_of, ["load"], "{said}");
 }

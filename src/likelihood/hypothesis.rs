@@ -124,11 +124,13 @@ impl Predictor {
     pub(crate) fn placed(&self, parts: &[Part]) -> Vec<Placed> {
         let plan = &self.model.plan;
         let law = |part: &Part| {
-            let Part::Law { site, source, law } = part else { return None };
+            let Part::Law { site, source: source_of, law } = part else { return None };
             let into = self.name(*site);
-            let of = source.map(|e| plan.sources.entries[e].0.name.clone());
+            let source = |e: usize| plan.sources.entries[e].0.name.clone();
+            let of = source_of.map(source);
             let effect = law.effect.with_values(&law.values).ok()?;
-            Some(Placed::new(effect, &into, of.as_deref()))
+            let also_of = law.load.map(source).into_iter().collect();
+            Some(Placed { also_of, ..Placed::new(effect, &into, of.as_deref()) })
         };
         parts.iter().filter_map(law).collect()
     }
@@ -208,7 +210,8 @@ impl Predictor {
                         (Site::Output(o), _) => column(&path.predicted, path.outputs, *o),
                         (_, Some(e)) => column(&path.seen, entries, *e),
                     };
-                    columns.extend(law.slopes(&z).into_iter().map(|column| (*site, column)));
+                    let load = law.load.map(|e| column(&path.seen, entries, e)).unwrap_or_default();
+                    columns.extend(law.slopes(&z, &load).into_iter().map(|slope| (*site, slope)));
                 }
             }
         }

@@ -17,6 +17,8 @@ pub(crate) struct Law {
     pub name: &'static str,
     pub effect: Box<dyn CandidateEffect>,
     pub card: EffectCard,
+    /// Entry of the table of sources of a second coordinate: the load of a friction.
+    pub load: Option<usize>,
     /// Values of the parameters.
     pub values: Vec<f64>,
     /// Parameters that may be fitted.
@@ -32,8 +34,9 @@ pub(crate) enum Spot {
     OwnPath { input: bool },
 }
 
-/// The laws of a coordinate at a spot, each at every point of its grid.
-pub(crate) fn laws(spot: Spot, view: &View) -> Vec<Law> {
+/// The laws of a coordinate at a spot, each at every point of its grid, those of a load with each that
+/// is offered.
+pub(crate) fn laws(spot: Spot, view: &View, loads: &[usize]) -> Vec<Law> {
     let mut found = vec![];
     for (own, effect) in register::effects() {
         let card = effect.card();
@@ -45,6 +48,16 @@ pub(crate) fn laws(spot: Spot, view: &View) -> Vec<Law> {
             (Spot::OwnPath { .. }, Needs::Velocity) => false,
             _ => false,
         };
+        let under_load = card.needs == Needs::VelocityUnderLoad
+            && matches!(spot, Spot::Channel { velocity: true })
+            && view.changes_sign();
+        if under_load {
+            for &load in loads {
+                let all = points(own.name, effect.as_ref(), &card, spot, view).into_iter();
+                found.extend(all.map(|law| Law { load: Some(load), ..law }));
+            }
+            continue;
+        }
         let allowed = match spot {
             Spot::Channel { .. } => card.places.channel,
             Spot::OwnPath { input: true } => card.places.input,
@@ -66,7 +79,7 @@ pub(crate) fn offsets() -> Vec<Law> {
         (plain && card.needs == Needs::Nothing).then(|| {
             let values = card.values();
             let free = (0..values.len()).collect();
-            Law { name: own.name, effect, card, values, free }
+            Law { name: own.name, effect, card, load: None, values, free }
         })
     });
     all.collect()
@@ -106,7 +119,7 @@ fn points(
                 .collect();
             let effect = effect.boxed();
             let card = within(card, &search, &free);
-            found.push(Law { name, effect, card, values, free });
+            found.push(Law { name, effect, card, load: None, values, free });
         }
     }
     found
@@ -153,32 +166,36 @@ impl Law {
         self.free.iter().filter(linear).copied().collect()
     }
 
-    /// One column per coefficient; a law without one is a column itself.
-    pub fn columns(&self, z: &[f64]) -> Vec<Vec<f64>> {
+    /// One column per coefficient; a law without one is a column itself. `load` is the course of the second
+    /// coordinate, empty where there is none.
+    pub fn columns(&self, z: &[f64], load: &[f64]) -> Vec<Vec<f64>> {
         let coefficients = self.coefficients();
         if coefficients.is_empty() {
-            return vec![self.course(&self.values, z)];
+            return vec![self.course(&self.values, z, load)];
         }
         coefficients
             .iter()
             .map(|&one| {
                 let mut values = self.values.clone();
                 coefficients.iter().for_each(|&i| values[i] = f64::from(u8::from(i == one)));
-                self.course(&values, z)
+                self.course(&values, z, load)
             })
             .collect()
     }
 
-    /// w along a course of the coordinate; what is not finite is 0.
-    pub fn course(&self, values: &[f64], z: &[f64]) -> Vec<f64> {
+    /// w along a course of the coordinates; what is not finite is 0.
+    fn course(&self, values: &[f64], z: &[f64], load: &[f64]) -> Vec<f64> {
         let lanes = 8;
         let packs = z.len().div_ceil(lanes);
         let parameters: Vec<F64x8> =
             (0..packs).flat_map(|_| values.iter().map(|&value| F64x8::constant(value))).collect();
+        let series: Vec<&[f64]> = std::iter::once(z).chain(self.load.map(|_| load)).collect();
         let coordinates: Vec<F64x8> = (0..packs)
-            .map(|pack| {
+            .flat_map(|pack| series.iter().map(move |series| (pack, series)))
+            .map(|(pack, series)| {
                 let mut at = F64x8::constant(0.0);
-                for (lane, z) in z[pack * lanes..].iter().take(lanes).enumerate() {
+                let from = (pack * lanes).min(series.len());
+                for (lane, z) in series[from..].iter().take(lanes).enumerate() {
                     at.0[lane] = *z;
                 }
                 at
@@ -201,7 +218,7 @@ impl Law {
 
     /// Slopes of w along every free parameter, by central differences: parameters are few, and an effect's law
     /// is a formula.
-    pub fn slopes(&self, z: &[f64]) -> Vec<Vec<f64>> {
+    pub fn slopes(&self, z: &[f64], load: &[f64]) -> Vec<Vec<f64>> {
         let coefficients = self.coefficients();
         self.free
             .iter()
@@ -216,7 +233,7 @@ impl Law {
                 let at = |sign: f64| {
                     let mut values = self.values.clone();
                     values[i] += sign * h;
-                    self.course(&values, z)
+                    self.course(&values, z, load)
                 };
                 let (up, down) = (at(1.0), at(-1.0));
                 up.iter().zip(&down).map(|(a, b)| (a - b) / (2.0 * h)).collect()
@@ -232,8 +249,12 @@ mod tests {
     #[test]
     fn thresholds_and_widths_stay_in_the_range_of_their_coordinate() {
         let z: Vec<f64> = (0..2000).map(|k| 3.0 * (0.01 * f64::from(k)).sin()).collect();
-        let all = laws(Spot::Channel { velocity: true }, &View::new(&z, 0.01));
+        let all = laws(Spot::Channel { velocity: true }, &View::new(&z, 0.01), &[3]);
         assert!(all.iter().any(|law| law.name == "stribeck_friction"));
+        let loaded = all.iter().find(|law| law.load == Some(3)).unwrap();
+        let columns = loaded.columns(&[-9.0, 9.0], &[2.0, -4.0]);
+        assert!((columns[0][0] + 1.0).abs() < 1e-6 && (columns[1][0] + 2.0).abs() < 1e-6);
+        assert!((columns[0][1] - 1.0).abs() < 1e-6 && (columns[1][1] - 4.0).abs() < 1e-6);
         for law in &all {
             for &i in law.free.iter().filter(|&&i| {
                 let parameter = &law.card.parameters[i];

@@ -35,6 +35,8 @@ pub(crate) struct Spotted {
     pub z: Vec<f64>,
     pub knots: Vec<f64>,
     pub laws: Vec<Law>,
+    /// Courses of the loads that laws of it may have, by entry of the table of sources.
+    pub loads: Vec<(usize, Vec<f64>)>,
     /// Size of an amplitude: force, output or parameter.
     pub scale: f64,
 }
@@ -70,11 +72,16 @@ impl Predictor {
         };
         let push = |site, source: Option<usize>, z: Vec<f64>, spot, scale, direction| {
             let own_path = matches!(spot, Spot::OwnPath { .. });
-            let laws = laws(spot, &view(&z, own_path)).into_iter();
+            let loads = match spot {
+                Spot::Channel { velocity: true } => self.loads(path, site),
+                _ => vec![],
+            };
+            let offered: Vec<usize> = loads.iter().map(|load| load.0).collect();
+            let laws = laws(spot, &view(&z, own_path), &offered).into_iter();
             let laws = laws.filter(|law| self.scope.effect(law.name));
             let laws = laws.map(|law| law.signed(direction)).collect();
             let knots = knots(&z).unwrap_or_default();
-            Spotted { site, source, z, knots, laws, scale }
+            Spotted { site, source, z, knots, laws, loads, scale }
         };
         let forces = self.distinct(path);
         let moved = forces.iter().map(|&c| self.moved_by(path, c, scales[c]));
@@ -109,6 +116,7 @@ impl Predictor {
             z: ones.clone(),
             knots: vec![],
             laws: offsets().into_iter().filter(|law| self.scope.effect(law.name)).collect(),
+            loads: vec![],
             scale,
         };
         found.extend(forces.into_iter().map(|c| offset(Site::Force(c), scales[c])));
@@ -119,11 +127,27 @@ impl Predictor {
             if free && path.theta.len() + path.c_theta.len() > 0 {
                 let scale = PARAMETER * self.model.theta[p].abs();
                 let site = Site::Parameter(p);
-                let (z, knots, laws) = (ones.clone(), vec![], vec![]);
-                found.push(Spotted { site, source: None, z, knots, laws, scale });
+                let (z, knots, laws, loads) = (ones.clone(), vec![], vec![], vec![]);
+                found.push(Spotted { site, source: None, z, knots, laws, loads, scale });
             }
         }
         Ok(found)
+    }
+
+    /// What may be the load of a friction in a channel: what has its unit and is no velocity.
+    fn loads(&self, path: &Path, site: Site) -> Vec<(usize, Vec<f64>)> {
+        let plan = &self.model.plan;
+        let entries = &plan.sources.entries;
+        let Site::Force(c) = site else { return vec![] };
+        let unit = &self.forces()[c].1;
+        let may_be = |&e: &usize| {
+            !unit.is_empty()
+                && entries[e].0.unit == *unit
+                && !plan.is_velocity(e)
+                && !(0..e).any(|other| plan.rates.same(e, other))
+        };
+        let named = (0..plan.sources.named - 1).filter(may_be);
+        named.map(|e| (e, column(&path.seen, entries.len(), e))).collect()
     }
 
     /// How far a force of its own scale moves every source within a sample, on average.
@@ -164,13 +188,19 @@ impl Spotted {
         let mut first = vec![];
         for law in &self.laws {
             first.push(columns.len());
-            columns.extend(law.columns(&self.z));
+            columns.extend(law.columns(&self.z, self.load_of(law)));
         }
         first.push(columns.len());
         if let Site::Parameter(_) = self.site {
             columns.push(vec![1.0; self.z.len()]);
         }
         (columns.into_iter().map(|column| (self.site, column)).collect(), first)
+    }
+
+    /// The course of a law's load; empty where it has none.
+    pub fn load_of(&self, law: &Law) -> &[f64] {
+        let own = self.loads.iter().find(|(e, _)| law.load == Some(*e));
+        own.map_or(&[], |(_, course)| course)
     }
 
     /// Where it is.

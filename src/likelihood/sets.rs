@@ -40,7 +40,8 @@ pub(crate) fn sets(
     for own in [Some(spot), offset.filter(|o| o.source != spot.source)].into_iter().flatten() {
         for law in &own.laws {
             let first = columns.len();
-            columns.extend(law.columns(&own.z).into_iter().map(|column| (own.site, column)));
+            let own_columns = law.columns(&own.z, own.load_of(law)).into_iter();
+            columns.extend(own_columns.map(|column| (own.site, column)));
             let columns = (first..columns.len()).collect();
             entries.push(Entry { law, site: own.site, source: own.source, columns });
         }

@@ -6,7 +6,7 @@
 // one segment is a list of one range
 #[allow(dead_code, clippy::single_range_in_vec_init)]
 #[path = "../../src/likelihood/tests/plants.rs"]
-mod plants;
+pub mod plants;
 
 mod bare;
 mod more;

@@ -168,7 +168,9 @@ fn stands_for(cause: &Candidate, placed: &Placed) -> Option<f64> {
             let choice = parameter.role != Role::Choice || (value - start).abs() < 0.5;
             choice && value.is_finite() == start.is_finite()
         });
-    if cause.effect != placed.effect.typetag_name() || !same || values.len() != start.len() {
+    let name = placed.effect.typetag_name();
+    let alike = cause.effect == name && cause.also_of == placed.also_of;
+    if !alike || !same || values.len() != start.len() {
         return None;
     }
     if cause.into == placed.into && cause.of == placed.of {
