@@ -263,11 +263,12 @@ fn causes_are_explained_together_and_the_rest_is_noise() {
 }
 
 /// Rates over seeds, as a table: `SEEDS=20 cargo test --release --test diagnosis disturbed::rates --
-/// --ignored --nocapture`.
+/// --ignored --nocapture`; `ONLY` is part of a plant's name, `FROM` the first seed.
 #[test]
 #[ignore = "minutes to hours"]
 fn rates() {
-    let seeds: u64 = std::env::var("SEEDS").ok().and_then(|s| s.parse().ok()).unwrap_or(20);
+    let number = |name: &str| -> Option<u64> { std::env::var(name).ok()?.parse().ok() };
+    let (first, seeds) = (number("FROM").unwrap_or(0), number("SEEDS").unwrap_or(20));
     let only = std::env::var("ONLY").unwrap_or_default();
     println!(
         "| plant | nothing hidden: named | effect named first | first or among look-alikes | seconds |"
@@ -276,7 +277,7 @@ fn rates() {
     for case in cases().iter().filter(|case| case.name.contains(&only)) {
         let size = case.as_large_as_noise();
         let (mut wrong, mut right, mut within, mut seconds) = (0, 0, 0, 0.0);
-        for seed in 0..seeds {
+        for seed in first..first + seeds {
             let nothing = case.finding(0.0, 3000, 200 + seed);
             wrong += usize::from(nothing.in_the_machine().next().is_some());
             let hidden = case.finding(size, 3000, 400 + seed);
