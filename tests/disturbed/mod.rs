@@ -192,13 +192,10 @@ impl Case {
 
     /// Whether the effect at its place heads a cause or stands among the look-alikes of one.
     fn is_in_a_set(&self, finding: &Finding) -> bool {
-        let others = finding.causes.iter().flat_map(|cause| &cause.indistinguishable);
-        let in_a_set = others.into_iter().any(|other| {
-            other.effect == self.effect
-                && other.into == self.into
-                && other.of.as_deref() == Some(self.of)
-        });
-        in_a_set || self.judged(finding).0
+        let mut others = finding.causes.iter().flat_map(|cause| &cause.indistinguishable);
+        let own = (self.effect, self.into, Some(self.of));
+        others.any(|o| (&o.effect[..], &o.into[..], o.of.as_deref()) == own)
+            || self.judged(finding).0
     }
 
     /// Whether the first cause is the effect at its place, and all that was said.
