@@ -4,7 +4,7 @@
 >>> model, record, test = lacuna.demo()
 >>> found = lacuna.diagnose(model, record, test)
 >>> print(found.headline)          # doctest: +SKIP
-Dry friction on force_1, 1.505 +- 0.011 N (99 % sure); without it 100 % of the removable error comes back.
+Dry friction on force_1, 1.505 +- 0.011 N (> 99 % sure); without it more than 99.9 % of the removable error comes back.
 >>> found.plot()                   # doctest: +SKIP
 >>> found.save("lacuna-out")       # doctest: +SKIP
 
