@@ -2,6 +2,7 @@
 //!
 //! One binary for all, because linking costs more than compiling.
 
+mod arm;
 mod data_faults;
 mod disturbed;
 mod equation_noise;

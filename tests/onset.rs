@@ -3,33 +3,11 @@
 //! The records are made by Runge-Kutta steps of their own, not by the program's engine.
 
 use lacuna::data::{Record, noise};
-use lacuna::diagnose::{Cause, Diagnosis, Finding, Note, Verdict};
-use lacuna::file::{Format, parse};
+use lacuna::diagnose::{Cause, Finding, Note, Verdict};
 
-/// An arm that hangs: J w' = u - b w - k sin(q).
-const ARM: &str = r#"
-sampling_time = 0.02
-[model.equations]
-inputs  = [{ name = "u", unit = "N m" }]
-states  = [
-  { name = "q", unit = "rad",   derivative = "w" },
-  { name = "w", unit = "rad/s", derivative = "(u - b*w - k*sin(q)) / J" },
-]
-outputs = [{ name = "angle", unit = "rad", value = "q" }]
-parameters = [
-  { name = "J", value = 0.02, unit = "kg m^2", min = 0.0 },
-  { name = "b", value = 0.03, unit = "N m s/rad", min = 0.0 },
-  { name = "k", value = 1.0,  unit = "N m", fixed = true },
-]
-channels    = [{ name = "on_arm", unit = "N m", into = [{ state = "w", gain = "1/J" }] }]
-coordinates = [
-  { name = "tilt", unit = "rad", value = "q", quantity = "position" },
-  { name = "rate", unit = "rad/s", value = "w", quantity = "velocity" },
-]
-"#;
+use super::arm::{self, STEP};
 
 const N: usize = 3000;
-const STEP: f64 = 0.02;
 /// Time at which something happens in these records, in s.
 const BEGINS: f64 = 24.0;
 
@@ -47,27 +25,13 @@ fn record(torque: Torque, drive: fn(f64) -> f64, sigma: fn(f64) -> f64, seed: u6
     }
     let rates =
         |t: f64, u: f64, [q, w]: [f64; 2]| [w, (u - 0.03 * w - q.sin() + torque(t, q, w)) / 0.02];
-    let moved = |[q, w]: [f64; 2], by: [f64; 2], h: f64| [q + h * by[0], w + h * by[1]];
-    let (mut x, mut y) = ([0.0, 0.0], vec![]);
-    let h = STEP / 10.0;
-    for k in 0..N {
-        y.push(x[0] + sigma(k as f64 * STEP) * error[k]);
-        for j in 0..10 {
-            let t = k as f64 * STEP + j as f64 * h;
-            let a = rates(t, u[k], x);
-            let b = rates(t + h / 2.0, u[k], moved(x, a, h / 2.0));
-            let c = rates(t + h / 2.0, u[k], moved(x, b, h / 2.0));
-            let d = rates(t + h, u[k], moved(x, c, h));
-            let sum: [f64; 2] = std::array::from_fn(|i| a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]);
-            x = moved(x, sum, h / 6.0);
-        }
-    }
-    Record::new(STEP).input("u", u).unwrap().output("angle", y).unwrap()
+    let angles = arm::angles(&u, 10, rates);
+    let read = |(k, q): (usize, f64)| q + sigma(k as f64 * STEP) * error[k];
+    arm::record(u, angles.into_iter().enumerate().map(read).collect())
 }
 
 fn diagnosed(record: &Record) -> Finding {
-    let system = parse(ARM, "arm.toml", Format::Toml).unwrap();
-    Diagnosis::of(&system).run(std::slice::from_ref(record), None, &()).unwrap()
+    arm::diagnosed(arm::ARM, record)
 }
 
 fn is_or_may_be(cause: &Cause, effect: &str, into: &str) -> bool {

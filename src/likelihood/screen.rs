@@ -70,10 +70,13 @@ impl Predictor {
             view.own_path = own_path;
             view
         };
+        let named = 0..plan.sources.named - 1;
+        let distinct: Vec<usize> =
+            named.filter(|&e| !(0..e).any(|other| plan.rates.same(e, other))).collect();
         let push = |site, source: Option<usize>, z: Vec<f64>, spot, scale, direction| {
             let own_path = matches!(spot, Spot::OwnPath { .. });
             let loads = match spot {
-                Spot::Channel { velocity: true } => self.loads(path, site),
+                Spot::Channel { velocity: true } => self.loads(path, site, &distinct),
                 _ => vec![],
             };
             let offered: Vec<usize> = loads.iter().map(|load| load.0).collect();
@@ -86,9 +89,6 @@ impl Predictor {
         let forces = self.distinct(path);
         let moved = forces.iter().map(|&c| self.moved_by(path, c, scales[c]));
         let moved = moved.collect::<Result<Vec<_>, _>>()?;
-        let named = 0..plan.sources.named - 1;
-        let distinct: Vec<usize> =
-            named.filter(|&e| !(0..e).any(|other| plan.rates.same(e, other))).collect();
         for (at, &c) in forces.iter().enumerate() {
             for &e in &distinct {
                 let z = column(&path.seen, entries, e);
@@ -134,20 +134,13 @@ impl Predictor {
         Ok(found)
     }
 
-    /// What may be the load of a friction in a channel: what has its unit and is no velocity.
-    fn loads(&self, path: &Path, site: Site) -> Vec<(usize, Vec<f64>)> {
+    /// What may be the load of a friction in a channel, of distinct entries of the table of sources.
+    fn loads(&self, path: &Path, site: Site, distinct: &[usize]) -> Vec<(usize, Vec<f64>)> {
         let plan = &self.model.plan;
-        let entries = &plan.sources.entries;
         let Site::Force(c) = site else { return vec![] };
         let unit = &self.forces()[c].1;
-        let may_be = |&e: &usize| {
-            !unit.is_empty()
-                && entries[e].0.unit == *unit
-                && !plan.is_velocity(e)
-                && !(0..e).any(|other| plan.rates.same(e, other))
-        };
-        let named = (0..plan.sources.named - 1).filter(may_be);
-        named.map(|e| (e, column(&path.seen, entries.len(), e))).collect()
+        let may_be = distinct.iter().filter(|&&e| plan.may_load(e, unit));
+        may_be.map(|&e| (e, column(&path.seen, plan.sources.entries.len(), e))).collect()
     }
 
     /// How far a force of its own scale moves every source within a sample, on average.

@@ -115,6 +115,23 @@ impl Base {
     pub fn may_push(&self, channel: usize) -> bool {
         self.declared_channels || !self.rates.is_definition(channel)
     }
+
+    /// Whether an entry of the source table is a velocity: so declared, or, where nothing
+    /// is declared, the derivative of another state or coordinate.
+    pub fn is_velocity(&self, entry: usize) -> bool {
+        let (signal, _) = &self.sources.entries[entry];
+        match &signal.quantity {
+            Some(quantity) => quantity.is_velocity(),
+            None => self.rates.is_rate(entry),
+        }
+    }
+
+    /// Whether an entry of the source table may be the load of a friction in a channel of this unit: a
+    /// force, which has that unit and is no velocity.
+    pub fn may_load(&self, entry: usize, unit: &str) -> bool {
+        let (signal, _) = &self.sources.entries[entry];
+        !unit.is_empty() && signal.unit == unit && !self.is_velocity(entry)
+    }
 }
 
 /// A system compiled for one sampling time.
@@ -254,16 +271,6 @@ impl Plan {
     /// The velocity of a motion: the entry itself where it is one, else its rate.
     pub fn motion(&self, entry: usize) -> Option<(usize, f64)> {
         if self.is_velocity(entry) { Some((entry, 1.0)) } else { self.rates.rate(entry) }
-    }
-
-    /// Whether an entry of the source table is a velocity: so declared, or, where nothing
-    /// is declared, the derivative of another state or coordinate.
-    pub fn is_velocity(&self, entry: usize) -> bool {
-        let (signal, _) = &self.sources.entries[entry];
-        match &signal.quantity {
-            Some(quantity) => quantity.is_velocity(),
-            None => self.rates.is_rate(entry),
-        }
     }
 
     /// Present values of the parameters of the effects in all slots.

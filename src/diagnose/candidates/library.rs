@@ -292,6 +292,6 @@ impl Builder<'_, '_> {
 
     /// Whether a source is a velocity, as declared or found.
     pub(crate) fn is_velocity(&self, source: usize) -> bool {
-        self.quantity(source).is_some_and(|quantity| quantity.is_velocity())
+        self.problem.base.is_velocity(source)
     }
 }

@@ -20,10 +20,9 @@ impl Builder<'_, '_> {
         let unit = &base.targets.entries[spot.target].0.unit;
         for &load in sources {
             let signal = &base.sources.entries[load].0;
-            let is_force = !unit.is_empty() && signal.unit == *unit && !self.is_velocity(load);
             let most = self.nominal.series(load).iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-            let may_be = is_force && most > 0.0 && most.is_finite();
-            if !may_be || Some(load) == spot.source {
+            let moves = most > 0.0 && most.is_finite();
+            if !moves || !base.may_load(load, unit) || Some(load) == spot.source {
                 continue;
             }
             let first = self.found.len();

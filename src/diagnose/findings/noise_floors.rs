@@ -15,7 +15,8 @@ use crate::fit::finished::Finished;
 use crate::fit::nuisance::Key;
 use crate::fit::problem::Part;
 use crate::validate::independent::{Simulated, independent};
-use crate::validate::noise_floor::{Floor, Left, NoiseFloor, REPEATED, predicted, repeated};
+use crate::validate::noise_floor::{Floor, Left, NoiseFloor, predicted, repeated};
+use crate::validate::test_error::{Scored, TestData};
 
 impl Context<'_, '_> {
     /// Noise of every output on the data that were fitted; `off` is what the baseline leaves.
@@ -56,15 +57,17 @@ impl Context<'_, '_> {
         signals.filter_map(|(o, signal)| Some((signal.name.clone(), entry(of(o)?)))).collect()
     }
 
-    /// Noise of every output on the data that were not used: that of the extended model where what it
-    /// leaves depends on nothing, else as it was found without it.
+    /// Noise of every output on the data that were not used, of which the baseline leaves `before`; `off` is
+    /// what it leaves of the data that were fitted, under `drives`.
     pub(super) fn floors_of_test(
         &self,
         chosen: &Finished,
-        test: &TestSeries,
-        others: Vec<Option<Floor>>,
+        (data, test): (&TestData, &TestSeries),
+        before: &Scored,
+        (off, drives): (&[Vec<f64>], &[&[f64]]),
     ) -> Vec<Option<Floor>> {
         let share = self.share(chosen);
+        let inputs = data.inputs(drives.len());
         let ends = test.begins.iter().skip(1).copied();
         let count = test.measured.iter().map(Vec::len).max().unwrap_or(0);
         let segments: Vec<_> =
@@ -79,11 +82,10 @@ impl Context<'_, '_> {
             let of = Simulated { left: &left, simulated, change: &change, inputs, segments };
             whole.then(|| independent(&of, share)).flatten()
         };
-        let floor = |(o, other): (usize, Option<Floor>)| match other {
-            Some(floor) if floor.method == REPEATED => Some(floor),
-            other => own(o).or(other),
-        };
-        others.into_par_iter().enumerate().map(floor).collect()
+        let foretold =
+            |o: usize| data.predicted(&before.errors[o], &inputs, Left { r: &off[o], drives });
+        let floor = |o| data.repeated(o).or_else(|| own(o)).or_else(|| foretold(o));
+        (0..before.errors.len()).into_par_iter().map(floor).collect()
     }
 
     /// Numbers that were fitted, initial states apart, which are forgotten, over the samples.

@@ -49,8 +49,7 @@ impl Context<'_, '_> {
         let drives: Vec<&[f64]> = self.joined.drive.inputs.iter().map(Vec::as_slice).collect();
         let off_before = self.off(&y_before);
         let tested = test.series(system, &before, &after)?;
-        let floors = test.floors(system, &before, &off_before, &drives);
-        let floors = self.floors_of_test(chosen, &tested, floors);
+        let floors = self.floors_of_test(chosen, (test, &tested), &before, (&off_before, &drives));
         // stretches of one record are no records
         let several = self.joined.spans.len() > 1 && !matches!(test.counted, Counted::All);
         let by = By {

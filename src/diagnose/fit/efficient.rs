@@ -42,8 +42,11 @@ pub(crate) fn efficient(
     errors: &Precision,
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Option<Efficient> {
+    if nuisance.segments >= MANY {
+        return None;
+    }
     let by = Stretches::new(problem, Part::All).estimate(&plain.residuals).whitener;
-    if !by.is_coloured() || nuisance.segments >= MANY {
+    if !by.is_coloured() {
         return None;
     }
     let (models, filters) = (std::slice::from_ref(&plain.model), std::slice::from_ref(&by));

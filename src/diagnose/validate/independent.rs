@@ -66,6 +66,9 @@ impl Simulated<'_> {
     /// Mean square of a change over that of the whitened change; `square`, the mean square of what is
     /// left, where nothing was changed.
     fn hidden(&self, square: f64) -> f64 {
+        if self.change.len() != self.left.len() {
+            return square;
+        }
         let known = |x: &[f64]| -> Vec<f64> {
             x.iter().map(|v| if v.is_finite() { *v } else { 0.0 }).collect()
         };
@@ -73,9 +76,7 @@ impl Simulated<'_> {
         let count = self.left.iter().filter(|v| v.is_finite()).count() as f64;
         let noise = Autoregressive::estimate(&left, self.segments, count);
         let mut white = vec![0.0; change.len()];
-        if change.len() == left.len() {
-            noise.whiten(&change, self.segments, &mut white);
-        }
+        noise.whiten(&change, self.segments, &mut white);
         let ratio = dot(&change, &change) / dot(&white, &white);
         if ratio.is_finite() { ratio } else { square }
     }

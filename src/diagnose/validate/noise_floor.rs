@@ -15,8 +15,6 @@ pub struct NoiseFloor {
     pub method: String,
 }
 
-/// How a noise is found where periods repeat.
-pub(crate) const REPEATED: &str = "repeated periods";
 /// Past values of the residual that predict the next one.
 const PAST: usize = 16;
 /// Samples that inputs are looked back by.
@@ -61,7 +59,7 @@ pub(crate) fn repeated(y: &[f64], period: usize, from: usize) -> Option<Floor> {
     let square = differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64;
     // neighbouring differences share a sample
     let doubt = (3.0 / differences.len() as f64).sqrt();
-    Some(Floor { std: (0.5 * square).sqrt(), method: REPEATED, doubt, excess: None })
+    Some(Floor { std: (0.5 * square).sqrt(), method: "repeated periods", doubt, excess: None })
 }
 
 /// From one-step prediction: the residual of the baseline is predicted from its own past

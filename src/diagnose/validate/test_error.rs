@@ -2,13 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Metrics, Run};
 use crate::findings::series::TestSeries;
 use crate::system::System;
-use crate::validate::noise_floor::{self, Floor, predicted, predicted_by, repeated};
+use crate::validate::noise_floor::{Floor, Left, predicted, predicted_by, repeated};
 
 /// Data that nothing was fitted to or chosen on.
 pub(crate) struct TestData {
@@ -123,42 +121,32 @@ impl TestData {
         Ok(series)
     }
 
-    /// Noise of every output, from these records and the baseline's errors on them and on the
-    /// data used, `learnt` by output.
-    pub fn floors(
+    /// Noise of an output, where the first record has periods that repeat.
+    pub fn repeated(&self, o: usize) -> Option<Floor> {
+        let whole = self.records.first().filter(|_| !matches!(self.counted, Counted::From(_)))?;
+        let samples = whole.periods()?.samples;
+        repeated(&whole.outputs.get(o)?.values, samples, samples / 10)
+    }
+
+    /// Noise of an output at most: what is not foretold of the baseline's errors, `scored` on these records
+    /// and `learnt` on the data used; both predictors are tried on these.
+    pub fn predicted(
         &self,
-        system: &System,
-        before: &Scored,
-        learnt: &[Vec<f64>],
-        drives: &[&[f64]],
-    ) -> Vec<Option<Floor>> {
-        let signals = system.signals();
-        (0..signals.outputs.len())
-            .into_par_iter()
-            .map(|o| {
-                let whole =
-                    self.records.first().filter(|_| !matches!(self.counted, Counted::From(_)));
-                let periods = whole.and_then(Record::periods);
-                if let (Some(record), Some(periods)) = (whole, periods)
-                    && let Some(y) = record.outputs.get(o)
-                    && let Some(floor) = repeated(&y.values, periods.samples, periods.samples / 10)
-                {
-                    return Some(floor);
-                }
-                let inputs: Vec<Vec<f64>> =
-                    (0..signals.inputs.len()).map(|i| self.input(i)).collect();
-                let lent: Vec<&[f64]> = inputs.iter().map(Vec::as_slice).collect();
-                // inputs and errors end together
-                let n = before.errors[o].len();
-                let lent: Vec<&[f64]> =
-                    lent.into_iter().map(|u| &u[u.len().saturating_sub(n)..]).collect();
-                let scored = noise_floor::Left { r: &before.errors[o], drives: &lent };
-                let taught = noise_floor::Left { r: &learnt[o], drives };
-                // either is noise at most
-                let both = [predicted_by(taught, scored), predicted(scored)];
-                both.into_iter().flatten().min_by(|a, b| a.std.total_cmp(&b.std))
-            })
-            .collect()
+        scored: &[f64],
+        inputs: &[Vec<f64>],
+        learnt: Left<'_>,
+    ) -> Option<Floor> {
+        // inputs and errors end together
+        let n = scored.len();
+        let lent: Vec<&[f64]> = inputs.iter().map(|u| &u[u.len().saturating_sub(n)..]).collect();
+        let scored = Left { r: scored, drives: &lent };
+        let both = [predicted_by(learnt, scored), predicted(scored)];
+        both.into_iter().flatten().min_by(|a, b| a.std.total_cmp(&b.std))
+    }
+
+    /// Every input, one record after the other.
+    pub fn inputs(&self, count: usize) -> Vec<Vec<f64>> {
+        (0..count).map(|i| self.input(i)).collect()
     }
 
     fn input(&self, i: usize) -> Vec<f64> {
