@@ -1,7 +1,7 @@
 use super::*;
 use crate::candidates::library::library;
 use crate::data::Record;
-use crate::fit::found::Slot;
+use crate::fit::found::{Off, Slot};
 use crate::fit::problem::Added;
 use crate::prepare::prepared::Prepared;
 use crate::system::System;
@@ -53,6 +53,7 @@ fn what_diverges_in_the_end_loses_its_last_cause() {
         spikes: vec![vec![]],
         full: false,
         nothing: 0.0,
+        off: Off::default(),
         withdrawn: vec![],
     };
     let held = Nuisance::new(&prepared.problem, &prepared.nominal);

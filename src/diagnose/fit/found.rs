@@ -74,6 +74,15 @@ pub(crate) struct LeftOut {
     pub whole: Option<Memory>,
 }
 
+/// Probabilities that parameters of the model are off.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Off {
+    /// That all of them may be.
+    pub all: f64,
+    /// That one is while the others are right, by its index.
+    pub single: Vec<f64>,
+}
+
 /// What a search ended with.
 pub(crate) struct Found {
     pub model: Model,
@@ -88,6 +97,8 @@ pub(crate) struct Found {
     pub full: bool,
     /// Probability that nothing is wrong.
     pub nothing: f64,
+    /// Probabilities that parameters of the model are off.
+    pub off: Off,
     /// Causes that were taken back: samples that were not fitted are more probable without them.
     pub withdrawn: Vec<Added>,
 }

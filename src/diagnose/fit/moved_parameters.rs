@@ -2,10 +2,12 @@
 
 use crate::candidates::naming::{parameter_effect, title_of};
 use crate::error::DiagnoseError;
+use crate::evidence::moved;
 use crate::findings::cause::{Cause, LawPart, Site, Value, Wording};
 use crate::findings::causes::Scores;
 use crate::findings::context::Context;
 use crate::fit::finished::Finished;
+use crate::fit::nuisance::Key;
 use crate::fit::problem::Model;
 use crate::fit::refit::{Refit, refit};
 use crate::validate::false_discovery::{either, on_test};
@@ -40,6 +42,7 @@ impl Context<'_, '_> {
                 std_error: chosen.error_of(&moved.name, moved.std_error),
                 unit: unit.clone(),
             };
+            let probability = self.probability_of(chosen, p);
             let effect = parameter_effect();
             causes.push(Cause {
                 effect: effect.into(),
@@ -62,8 +65,9 @@ impl Context<'_, '_> {
                 },
                 parameters: vec![value],
                 p_value: Some(either(by_test, moved.distance(), 2 * chosen.nuisance.free.len())),
-                probability: None,
-                place_probability: None,
+                probability,
+                // a parameter is a place of its own
+                place_probability: probability,
                 error_removed: share,
                 indistinguishable: vec![],
                 runners_up: vec![],
@@ -75,6 +79,18 @@ impl Context<'_, '_> {
             });
         }
         Ok(causes)
+    }
+
+    /// Probability that a parameter is off: with all others free, or it alone. `None` where nothing is known of
+    /// its value.
+    fn probability_of(&self, chosen: &Finished, p: usize) -> Option<f64> {
+        let key = Key::Theta(p);
+        let unknown = chosen.nuisance.unknown(self.problem, &chosen.fitted.model, key);
+        let (from, width) = unknown.prior?;
+        let own = moved(chosen.fitted.model.theta[p] - from, chosen.error(key)?, width);
+        let off = &chosen.found.off;
+        let single = off.single.get(p).copied().unwrap_or(0.0);
+        Some((off.all * own + single).clamp(0.0, 1.0))
     }
 
     /// The chosen model with one parameter where it began, refitted.

@@ -43,8 +43,6 @@ pub(crate) struct Nuisance {
     pub initial: Vec<f64>,
     /// Free parameters: index, nominal value; empty where parameters are trusted.
     pub free: Vec<(usize, f64)>,
-    /// Free parameters whose prior has been released.
-    pub released: Vec<usize>,
     pub segments: usize,
     /// What stays where it is.
     pub held: Option<Key>,
@@ -57,7 +55,6 @@ impl Nuisance {
             spread: nominal.state_spread.clone(),
             initial: problem.base.signals.initial(),
             free: vec![],
-            released: vec![],
             segments: problem.drive.segments.len().min(SEGMENTS),
             held: None,
         }
@@ -108,11 +105,7 @@ impl Nuisance {
                 let floor =
                     if nominal > 0.0 { parameter.min.max(0.05 * nominal) } else { parameter.min };
                 let unknown = Unknown::new(value, 0.1 * size).within(floor, parameter.max);
-                if self.released.contains(&p) {
-                    unknown
-                } else {
-                    unknown.expected(nominal, PRIOR * size)
-                }
+                unknown.expected(nominal, PRIOR * size)
             }
             Key::EffectParameter(a, i) => {
                 let cause = &model.added[a].cause;

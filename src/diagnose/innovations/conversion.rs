@@ -13,7 +13,7 @@ use crate::error::DiagnoseError;
 use crate::findings::note::{Disturbance, Disturbs};
 use crate::fit::covariance::Precision;
 use crate::fit::finished::Finished;
-use crate::fit::found::{Belief, Found, SET, Slot};
+use crate::fit::found::{Belief, Found, Off, SET, Slot};
 use crate::fit::hypothesis::Track;
 use crate::fit::nuisance::{Key, Nuisance};
 use crate::fit::problem::{Added, Grain, Model, Part};
@@ -84,6 +84,7 @@ pub(super) fn finished(
             spikes: problem.spikes(),
             full: false,
             nothing: found.nothing,
+            off: Off::default(),
             withdrawn,
         },
         fitted: Fitted { model, keys, columns: vec![], residuals },

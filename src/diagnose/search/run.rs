@@ -15,9 +15,9 @@ use crate::candidates::candidate::Wire;
 use crate::candidates::library::Allowed;
 use crate::candidates::screen::Screen;
 use crate::evidence::NoiseModel;
-use crate::fit::found::Found;
+use crate::fit::found::{Found, Off};
 use crate::fit::nuisance::Nuisance;
-use crate::fit::problem::{Grain, Model, Part, Problem};
+use crate::fit::problem::{Added, Grain, Model, Part, Problem};
 use crate::prepare::input_dependence::DEPENDS;
 use crate::prepare::known_clipping::limited;
 use crate::prepare::operating_range::Nominal;
@@ -210,10 +210,24 @@ fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched
         spikes: study.problem.spikes(),
         full: headline.causes() >= study.most && study.most > 0,
         nothing,
+        off: off(&study),
         withdrawn,
     };
     let nuisance = study.nuisance(headline.free).clone();
     Some(Searched { found, free: headline.free, nuisance })
+}
+
+/// How probable it is that parameters are off: all of them, or one alone.
+fn off(study: &Study<'_, '_>) -> Off {
+    let has = |fit: &Fit, p: usize| {
+        let is_it = |added: &Added| matches!(added.cause.wire, Wire::Parameter(q) if q == p);
+        !fit.free && fit.model.added.iter().any(is_it)
+    };
+    let parameters = 0..study.problem.base.signals.parameters.len();
+    Off {
+        all: study.beam.probability(|fit| fit.free),
+        single: parameters.map(|p| study.beam.probability(|fit| has(fit, p))).collect(),
+    }
 }
 
 #[cfg(test)]
