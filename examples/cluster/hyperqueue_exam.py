@@ -13,6 +13,7 @@ import argparse
 import pathlib
 import subprocess
 import sys
+import time
 
 from hyperqueue import Client, Job, LocalCluster
 from hyperqueue.cluster import WorkerConfig
@@ -28,7 +29,9 @@ def missing(lacuna, config, out):
 
 
 def work(client, arguments, out):
-    for _ in range(ROUNDS):
+    for turn in range(ROUNDS):
+        # what is in the way, such as a full disk, may take a while to be mended
+        time.sleep(turn)
         keys = missing(arguments.lacuna, arguments.config, out)
         if not keys:
             return

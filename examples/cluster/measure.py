@@ -1,15 +1,19 @@
 #!/usr/bin/env python3
-"""Measures what HyperQueue costs, and that nothing is lost when processes die.
+"""Measures what HyperQueue costs, and that nothing is lost when processes die and a disk is full.
 
-    examples/cluster/measure.py CONFIG FOLDER [--workers 4] [--kill-every 20]
+    examples/cluster/measure.py CONFIG FOLDER [--workers 4] [--kill-every 20] [--disk MB]
 
 Works the exam of CONFIG off by plain processes, one a case, one after another; then by HyperQueue
-while one process of a task is killed with signal 9 every so many seconds; compares the bytes.
+while every so many seconds something is killed with signal 9: the process of a task and the engine with
+all its workers by turns, the engine to be started again; compares the bytes. With --disk the
+results lie on a file system of that size (a tmpfs, which takes root), and once it is full to the last byte for
+five seconds.
 """
 
 import argparse
 import os
 import pathlib
+import resource
 import signal
 import subprocess
 import sys
@@ -34,12 +38,44 @@ def processes(program):
     return [pid for pid in own if pid in parents and parents[pid][1] == program]
 
 
+class Disk:
+    """A file system of a size that is full for a while, once."""
+
+    def __init__(self, at, megabytes):
+        at.mkdir(parents=True)
+        subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={megabytes}m", "tmpfs", str(at)], check=True)
+        self.ballast, self.until, self.done = at / "ballast", None, 0
+
+    def turn(self, done):
+        """Fills it, and makes room again five seconds later; counts what was done meanwhile."""
+        if self.until is None:
+            self.until = time.time() + 5.0
+            self.done = -done
+            with open(self.ballast, "wb", buffering=0) as file:
+                for block in [1 << 20, 1 << 12, 1]:
+                    try:
+                        while file.write(b"0" * block) == block:
+                            pass
+                    except OSError:
+                        pass
+        elif self.ballast.exists() and time.time() > self.until:
+            self.ballast.unlink()
+            self.done += done
+
+
+def spent():
+    """CPU seconds of all processes that were started here and have ended: other programs do not count."""
+    own = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return own.ru_utime + own.ru_stime
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("config")
     parser.add_argument("folder")
     parser.add_argument("--workers", type=int, default=4)
     parser.add_argument("--kill-every", type=float, default=20.0)
+    parser.add_argument("--disk", type=int, help="size in MB of the file system that is full once")
     parser.add_argument("--lacuna", default="lacuna")
     arguments = parser.parse_args()
     folder = pathlib.Path(arguments.folder)
@@ -47,37 +83,54 @@ def main():
     study = [lacuna, "study", "--config", arguments.config]
     keys = subprocess.run(study + ["--cases"], check=True, capture_output=True, text=True).stdout.split()
 
-    began = time.time()
+    began, before = time.time(), spent()
     single = ["--threads", "1", "--quiet", "--out", str(folder / "plain")]
     for key in keys:
         subprocess.run(study + ["--case", key] + single, check=True, stdout=subprocess.DEVNULL)
-    plain = time.time() - began
+    plain, plain_cpu = time.time() - began, spent() - before
     subprocess.run([lacuna, "study", "merge", str(folder / "plain"), "--out", str(folder / "plain/whole"), "--quiet"],
                    check=True, stdout=subprocess.DEVNULL)
 
     here = pathlib.Path(__file__).parent
-    began, killed = time.time(), 0
-    engine = subprocess.Popen(
-        [sys.executable, str(here / "hyperqueue_exam.py"), arguments.config, str(folder / "queue"),
-         "--workers", str(arguments.workers), "--lacuna", lacuna],
-        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    out = folder / "queue"
+    disk = Disk(out, arguments.disk) if arguments.disk else None
+    before = spent()
+    began, killed = time.time(), {"task": 0, "engine": 0}
+    command = [sys.executable, str(here / "hyperqueue_exam.py"), arguments.config, str(out),
+               "--workers", str(arguments.workers), "--lacuna", lacuna]
+
+    def start():
+        return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    engine = start()
     next_kill = began + arguments.kill_every
     while engine.poll() is None:
         time.sleep(0.05)
-        if time.time() >= next_kill:
-            found = processes(lacuna)
-            if found:
-                try:
-                    os.kill(found[0], signal.SIGKILL)
-                    killed += 1
-                    next_kill += arguments.kill_every
-                except ProcessLookupError:
-                    pass
-    queue = time.time() - began
+        done = len(list((out / "marks").glob("*.json"))) if (out / "marks").exists() else 0
+        if disk and done > len(keys) // 3:
+            disk.turn(done)
+        if time.time() < next_kill:
+            continue
+        if killed["task"] > killed["engine"]:
+            engine.kill()
+            engine.wait()
+            killed["engine"] += 1
+            engine = start()
+            next_kill += arguments.kill_every
+        elif found := processes(lacuna):
+            try:
+                os.kill(found[0], signal.SIGKILL)
+                killed["task"] += 1
+                next_kill += arguments.kill_every
+            except ProcessLookupError:
+                pass
+    queue, queue_cpu = time.time() - began, spent() - before
     same = all((folder / "plain/whole" / name).read_bytes() == (folder / "queue/whole" / name).read_bytes()
                for name in ["study.json", "cases.csv", "report.html"])
-    print(f"{len(keys)} cases: plain processes {plain:.1f} s, one at a time; HyperQueue with "
-          f"{arguments.workers} workers {queue:.1f} s, {killed} killed; same bytes: {same}")
+    full = f", disk full for 5 s, {disk.done} cases done in that time" if disk else ""
+    print(f"{len(keys)} cases: plain processes {plain:.1f} s ({plain_cpu:.1f} CPU s), one at a time; "
+          f"HyperQueue with {arguments.workers} workers {queue:.1f} s ({queue_cpu:.1f} CPU s), {killed['task']} tasks and {killed['engine']} engines killed"
+          f"{full}; same bytes: {same}")
     sys.exit(0 if same and engine.returncode == 0 else 1)
 
 
