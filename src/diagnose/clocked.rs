@@ -25,16 +25,21 @@ impl Diagnosis<'_> {
         fault: &Fault,
         watch: &dyn Watch,
     ) -> Result<(Searched, bool), DiagnoseError> {
+        let as_much = |of: &Searched| {
+            of.causes.len() == 1 && of.gain.error_removed >= fault.removed - AS_MUCH
+        };
+        let machine = self.search(records, test, self.max_causes, watch)?;
+        if as_much(&machine) {
+            return Ok((machine.or_else(fault.alternative()), false));
+        }
         let one = self.search(records, test, 1, watch)?;
-        if one.causes.len() == 1 && one.gain.error_removed >= fault.removed - AS_MUCH {
-            let searched = self.search(records, test, self.max_causes, watch)?;
-            return Ok((searched.or_else(fault.alternative()), false));
+        if as_much(&one) {
+            return Ok((machine.or_else(fault.alternative()), false));
         }
         let mended: Vec<Record> = records.iter().map(|r| fault.mend(r)).collect();
         let mended_test = test.map(|record| fault.mend(record));
         let searched = self.search(&mended, mended_test.as_ref(), self.max_causes, watch)?;
         if one.track == Track::ParametersFree && !searched.causes.is_empty() {
-            let machine = self.search(records, test, self.max_causes, watch)?;
             let nothing_left = machine.dependence < DEPENDS;
             let parameters =
                 |of: &Searched| of.causes.iter().filter(|cause| cause.is_parameter()).count();

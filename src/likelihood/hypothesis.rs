@@ -84,6 +84,17 @@ impl Predictor {
     /// Fits a hypothesis from the values that its parts have at the noise given; `None` where it
     /// cannot be built or run.
     pub(crate) fn fit(&self, parts: Vec<Part>, theta: &[f64], noise: &Noise) -> Option<Hypothesis> {
+        self.fit_in(ITERATIONS, parts, theta, noise)
+    }
+
+    /// The same in so many iterations at most.
+    pub(crate) fn fit_in(
+        &self,
+        iterations: usize,
+        parts: Vec<Part>,
+        theta: &[f64],
+        noise: &Noise,
+    ) -> Option<Hypothesis> {
         let start = Hypothesis {
             parts,
             theta: theta.to_vec(),
@@ -91,7 +102,7 @@ impl Predictor {
             log_likelihood: f64::NEG_INFINITY,
         };
         let (best, run) = self.evaluated(start).ok()?;
-        let (best, _) = self.improved(best, run)?;
+        let (best, _) = self.improved(best, run, iterations)?;
         best.log_likelihood.is_finite().then_some(best)
     }
 
@@ -107,7 +118,7 @@ impl Predictor {
             best.noise = chosen.noise;
             best.log_likelihood = chosen.log_likelihood;
             let (next, run) = self.evaluated(best.clone()).ok()?;
-            best = self.improved(next, run)?.0;
+            best = self.improved(next, run, ITERATIONS)?.0;
         }
         Some(best)
     }
@@ -158,9 +169,14 @@ impl Predictor {
     }
 
     /// Damped Gauss-Newton steps at a fixed noise.
-    fn improved(&self, mut best: Hypothesis, mut run: Followed) -> Option<(Hypothesis, Followed)> {
+    fn improved(
+        &self,
+        mut best: Hypothesis,
+        mut run: Followed,
+        iterations: usize,
+    ) -> Option<(Hypothesis, Followed)> {
         let mut damping = 1e-6;
-        for _ in 0..ITERATIONS {
+        for _ in 0..iterations {
             if !best.log_likelihood.is_finite() || best.numbers() == 0 {
                 return Some((best, run));
             }

@@ -41,6 +41,7 @@ mod parametrised;
 mod path;
 mod places;
 mod predictor;
+mod racing;
 mod ranked;
 mod replay;
 mod rows;

@@ -20,6 +20,7 @@ use super::intensities::most_likely;
 use super::noise::{Noise, Slow};
 use super::path::Path;
 use super::predictor::Predictor;
+use super::racing::{DECIDED, RACED, going_on};
 use super::ranked::{FittedLaws, RankedPlace, RankedPlaces};
 use super::replay::Pass;
 use super::screen::{Screened, Spotted};
@@ -33,11 +34,6 @@ use crate::system::System;
 /// Places that get a noise of their own, and of which the laws are fitted.
 const LEADING: usize = 6;
 const FITTED: usize = 2;
-/// Sets that get a noise of their own at least, and how far behind the first another may be: they
-/// begin with the noise that is left beside a free curve, which leaves little to gain.
-const LEAST: usize = 3;
-const RACED: f64 = 30.0;
-
 /// Ranks places and laws of what a system lacks on records of it.
 ///
 /// # Errors
@@ -90,7 +86,9 @@ impl Predictor {
     ) -> Result<Survey, LikelihoodError> {
         let null = self.renewed(&self.model, noise, 2)?;
         let wanted = Wanted { theta: true, seen: true, gate: Some(self.gate()) };
-        let path = self.run(&self.model, &null.noise, wanted)?.path;
+        let run = self.run(&self.model, &null.noise, wanted)?;
+        let quick = self.quick(&null.noise, run.log_likelihood);
+        let path = run.path;
         let all = self.spots(&path)?;
         let spots: Vec<Spotted> = match at {
             None => all,
@@ -123,7 +121,7 @@ impl Predictor {
                 break;
             }
             done.push(place.spot);
-            fitted.extend(self.fitted(&path, &spots, place));
+            fitted.extend(self.fitted(&quick, &path, &spots, place));
         }
         let sets = self.weighed(&nothing, fitted, &spots);
         Ok(Survey { null, places, sets })
@@ -201,8 +199,15 @@ impl Predictor {
         found
     }
 
-    /// Sets of laws of a place, fitted exactly; with each the number of laws that it was chosen from.
-    fn fitted(&self, path: &Path, spots: &[Spotted], place: &Led) -> Vec<(Hypothesis, usize)> {
+    /// Sets of laws of a place, fitted exactly after a race; with each the number of laws that it was
+    /// chosen from.
+    fn fitted(
+        &self,
+        quick: &Self,
+        path: &Path,
+        spots: &[Spotted],
+        place: &Led,
+    ) -> Vec<(Hypothesis, usize)> {
         let spot = &spots[place.spot];
         let theta = &self.model.theta;
         let starts: Vec<Vec<Part>> = match spot.site {
@@ -215,16 +220,19 @@ impl Predictor {
         let samples = self.observed();
         let merit = |h: &Hypothesis| h.criterion(samples);
         let order = |all: &mut Vec<Hypothesis>| all.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
-        let fit = |parts: Vec<Part>| self.fit(parts, theta, &place.noise);
-        let mut raced: Vec<Hypothesis> = starts.into_par_iter().filter_map(fit).collect();
+        let race = |parts: Vec<Part>| quick.raced(parts, theta, &place.noise);
+        let mut raced: Vec<Hypothesis> = starts.into_par_iter().filter_map(race).collect();
         order(&mut raced);
         // the noise anew only for those that it could still bring to the front
-        let top = raced.first().map_or(0.0, &merit);
-        let near = |(i, h): &(usize, Hypothesis)| *i < LEAST || merit(h) > top - RACED;
-        let near: Vec<Hypothesis> =
-            raced.into_iter().enumerate().filter(near).map(|(_, h)| h).collect();
-        let mut found: Vec<Hypothesis> =
-            near.into_par_iter().filter_map(|h| self.refit(h)).collect();
+        raced.truncate(going_on(&raced, RACED, merit));
+        let again = |h: Hypothesis| quick.refit(h);
+        let mut found: Vec<Hypothesis> = raced.into_par_iter().filter_map(again).collect();
+        order(&mut found);
+        // the integrator's own steps for what is not far behind after that
+        let far = found.split_off(going_on(&found, DECIDED, merit));
+        let fit = |h: Hypothesis| self.refit(self.fit(h.parts, &h.theta, &h.noise)?);
+        let mut found: Vec<Hypothesis> = found.into_par_iter().filter_map(fit).collect();
+        found.extend(far);
         order(&mut found);
         // single laws are left out again as long as that is better
         while let Some(best) = found.first().filter(|best| best.parts.len() > 1).cloned() {

@@ -34,6 +34,17 @@ impl Problem<'_> {
         };
         self.weight.iter().zip(&self.known).map(flagged).collect()
     }
+
+    /// Of some rows of an output those that stand alone in what `y` leaves: what a model accounts for was no
+    /// outlier, whatever an earlier one said. A free run may drift, so only neighbours are asked.
+    pub fn still_alone(&self, o: usize, y: &[f64], rows: &[usize]) -> Vec<usize> {
+        let known = &self.known[o];
+        let off = |k: usize| if known[k] { self.y[o][k] - y[k] } else { 0.0 };
+        let r: Vec<f64> = (0..self.len()).map(off).collect();
+        let far: Vec<f64> = r.iter().map(|v| v.abs()).collect();
+        let apart = in_units(&apart(&r, &far, known), known);
+        rows.iter().copied().filter(|&k| apart[k] > BEYOND).collect()
+    }
 }
 
 /// Which of the residuals are spikes: far from the median, and far from the mean of their
@@ -45,7 +56,13 @@ pub(crate) fn spikes(r: &[f64], known: &[bool]) -> Vec<bool> {
     }
     let centre = median(&values);
     let far: Vec<f64> = r.iter().map(|v| (v - centre).abs()).collect();
-    let single: Vec<f64> = (0..r.len())
+    let (far, single) = (in_units(&far, known), in_units(&apart(r, &far, known), known));
+    (0..r.len()).map(|k| known[k] && far[k] > BEYOND && single[k] > BEYOND).collect()
+}
+
+/// Distances of residuals from the mean of their neighbours; `far` where there are none.
+fn apart(r: &[f64], far: &[f64], known: &[bool]) -> Vec<f64> {
+    (0..r.len())
         .map(|k| {
             let neighbours: Vec<f64> = [k.checked_sub(1), Some(k + 1)]
                 .into_iter()
@@ -56,15 +73,14 @@ pub(crate) fn spikes(r: &[f64], known: &[bool]) -> Vec<bool> {
             let around = crate::statistics::mean(&neighbours);
             if neighbours.is_empty() { far[k] } else { (r[k] - around).abs() }
         })
-        .collect();
-    let of_known = |x: &[f64]| {
-        let kept: Vec<f64> = x.iter().zip(known).filter(|(_, k)| **k).map(|(v, _)| *v).collect();
-        1.4826 * median(&kept)
-    };
-    let (scale_far, scale_single) = (of_known(&far), of_known(&single));
-    (0..r.len())
-        .map(|k| known[k] && far[k] > BEYOND * scale_far && single[k] > BEYOND * scale_single)
         .collect()
+}
+
+/// Magnitudes in units of their robust scale.
+fn in_units(x: &[f64], known: &[bool]) -> Vec<f64> {
+    let kept: Vec<f64> = x.iter().zip(known).filter(|(_, k)| **k).map(|(v, _)| *v).collect();
+    let scale = 1.4826 * median(&kept);
+    x.iter().map(|v| if *v > 0.0 { v / scale } else { 0.0 }).collect()
 }
 
 #[cfg(test)]

@@ -127,9 +127,14 @@ fn standardised(cause: &Answered, truth: &Hidden) -> Vec<f64> {
     truth.parameters.iter().filter_map(one).filter(|z| z.is_finite()).collect()
 }
 
+/// Whether a name is a parameter of a model whose free parameters are all off.
+fn is_off(case: &Case, name: &str) -> bool {
+    case.conditions.parameter_error > 0.0 && name.starts_with("parameter>")
+}
+
 /// Every probability that was given to a name, and whether that name was hidden.
-fn probabilities(causes: &[&Answered], hidden: &[String]) -> Vec<(f64, bool)> {
-    let is_hidden = |name: &String| hidden.contains(name);
+fn probabilities(causes: &[&Answered], hidden: &[String], case: &Case) -> Vec<(f64, bool)> {
+    let is_hidden = |name: &String| hidden.contains(name) || is_off(case, name);
     let mut all = vec![];
     for cause in causes {
         // a sum is right where one of its laws is
@@ -177,7 +182,7 @@ impl Marks {
                 let z = (0.5 * (low + high) - share) / ((high - low) / (2.0 * WIDE));
                 z.is_finite().then_some(z)
             }),
-            probabilities: probabilities(&causes, &hidden),
+            probabilities: probabilities(&causes, &hidden, &truth.case),
             covered: standardised.iter().map(|z| z.abs() <= WIDE).collect(),
             standardised,
             removed,
@@ -194,11 +199,7 @@ impl Marks {
 
     /// Whether nothing was named beside what was hidden, by number. Wrong parameters may be.
     pub fn spurious(&self) -> usize {
-        let named = self.found.iter().filter(|name| {
-            let wrong =
-                self.case.conditions.parameter_error > 0.0 && name.starts_with("parameter>");
-            !wrong
-        });
+        let named = self.found.iter().filter(|name| !is_off(&self.case, name));
         named.count().saturating_sub(self.hits.iter().filter(|h| **h > Hit::Missed).count())
     }
 
