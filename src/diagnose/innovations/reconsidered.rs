@@ -189,10 +189,14 @@ fn by_innovations(
     if none && answer.dependence > DEPENDS {
         return None;
     }
-    // a likelihood is exact, a model is not: what it predicts must not get worse
-    let before = left(problem, &prepared.start)?;
-    let after = left(problem, &answer.fitted.model)?;
-    ((after / before).powi(2) <= LEAVES).then_some(answer)
+    // a likelihood is exact, a model is not: what it predicts must not get worse, where a free run predicts at
+    // all (Forssell and Ljung, IEEE Trans. Automatic Control 45, 2000)
+    let gets_worse = || {
+        let both = left(problem, &prepared.start).zip(left(problem, &answer.fitted.model));
+        both.is_none_or(|(before, after)| (after / before).powi(2) > LEAVES)
+    };
+    let predicts = base.forgets().unwrap_or(true);
+    (!predicts || !gets_worse()).then_some(answer)
 }
 
 /// Score that the innovations of an explanation follow from inputs before them, which those of the true
