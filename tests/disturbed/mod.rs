@@ -10,6 +10,7 @@ pub mod plants;
 
 mod bare;
 mod more;
+mod revolving;
 
 use lacuna::data::{Record, Signal};
 use lacuna::diagnose::{Diagnosis, Finding};
