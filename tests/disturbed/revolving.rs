@@ -1,11 +1,12 @@
 //! A pendulum that turns over: it does not forget where it was, so that a free run, whatever it is extended
 //! by, soon counts other turns than the record and predicts nothing. What a predictor does not foresee tells
-//! the friction all the same.
+//! the friction all the same; a free run would have had the torque of the other sign.
 
+use lacuna::data::Random;
 use lacuna::diagnose::Diagnosis;
 use lacuna::likelihood::Predictor;
 
-use super::plants::{Sizes, excitation, simulate, system, with};
+use super::plants::{Sizes, simulate, system, with};
 
 const PENDULUM: &str = r#"
 sampling_time = 0.01
@@ -28,6 +29,13 @@ coordinates = [
 ]
 "#;
 
+/// A torque that is another one every half second.
+fn steps(n: usize, seed: u64) -> Vec<f64> {
+    let mut random = Random::new(seed);
+    let held: Vec<f64> = (0..n.div_ceil(50)).map(|_| 0.5 * random.normal()).collect();
+    (0..n).map(|k| held[k / 50]).collect()
+}
+
 #[test]
 fn friction_is_named_where_a_free_run_predicts_nothing() {
     let friction = "into = \"joint\"\nof = \"rate\"\n\
@@ -35,7 +43,7 @@ fn friction_is_named_where_a_free_run_predicts_nothing() {
     let machine = with(PENDULUM, friction);
     let noise =
         Sizes { white: vec![0.05, 0.0], measurement: vec![0.01], wander: vec![], slow: vec![] };
-    let record = simulate(&machine, &excitation(2500, 0.01, 0.8, 7), &noise, 107);
+    let record = simulate(&machine, &steps(2500, 1), &noise, 101);
     let angle = &record.outputs[0].values;
     let turns = angle.iter().fold(0.0, |most: f64, y| most.max(y.abs())) / std::f64::consts::TAU;
     let baseline = system(PENDULUM);

@@ -3,6 +3,7 @@
 use super::{Fault, FaultKind};
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Simulation};
+use crate::innovations::criterion;
 use crate::system::System;
 use crate::validate::noise_floor::{Left, predicted};
 
@@ -19,7 +20,7 @@ const EXPLAINS: f64 = 0.93;
 const SAME: f64 = 0.1;
 /// Shifts that are tried, in samples.
 const SHIFTS: usize = 12;
-/// Samples of a record that are asked for its clock, at most.
+/// Samples of a record that are asked for its clock or its sign, at most.
 const MOST: usize = 6000;
 /// Sampling times that are tried, over the stated one; the best is refined.
 const STEPS: [f64; 10] = [0.1, 0.5, 0.667, 0.8, 0.9, 1.1, 1.25, 1.5, 2.0, 10.0];
@@ -89,6 +90,16 @@ pub(super) fn shifted(record: &Record, column: &str, samples: isize) -> Record {
     moved
 }
 
+/// Log likelihood of records under the noise that they call for, at the sensors or inside the plant, each judged
+/// by its first samples (Ljung, "System Identification", 2nd ed., section 7.4).
+fn predicted_by(system: &System, records: &[Record]) -> f64 {
+    let of = |record: &Record| {
+        let part = record.slice(0..record.len().min(MOST));
+        criterion(system, &part).unwrap_or(f64::NEG_INFINITY)
+    };
+    records.iter().map(of).sum()
+}
+
 fn columns(records: &[Record]) -> Vec<String> {
     let all = records.first().into_iter().flat_map(|r| r.outputs.iter().chain(&r.inputs));
     all.map(|signal| signal.name.clone()).collect()
@@ -118,6 +129,10 @@ pub(crate) fn flipped(system: &System, records: &[Record]) -> Result<Option<Faul
     let Some((best, name, turned)) = tried.first().filter(|t| t.0 < TURNED * before) else {
         return Ok(None);
     };
+    // what a free run says of a plant that does not forget is chance
+    if !(predicted_by(system, turned) > predicted_by(system, records)) {
+        return Ok(None);
+    }
     let same = |t: &&(f64, String, Vec<Record>)| t.0 < (1.0 + SAME) * best;
     Ok(Some(Fault {
         removed: share(before, *best, noise(system, turned)?),
