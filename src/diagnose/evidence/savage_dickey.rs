@@ -30,8 +30,8 @@ mod tests {
                 |variance: f64| (-0.5 * f64::powi(y, 2) / variance).exp() / variance.sqrt();
             let odds = density(s * s + w * w) / density(s * s);
             let variance: f64 = 1.0 / (1.0 / (s * s) + 1.0 / (w * w));
-            let told = moved(y * variance / (s * s), variance.sqrt(), w);
-            assert_relative_eq!(told, odds / (1.0 + odds), epsilon = 1e-12);
+            let found = moved(y * variance / (s * s), variance.sqrt(), w);
+            assert_relative_eq!(found, odds / (1.0 + odds), epsilon = 1e-12);
         }
     }
 

@@ -186,7 +186,7 @@ impl Context<'_, '_> {
     ) -> Vec<Cause> {
         let mut causes = vec![];
         for (o, rows) in chosen.found.spikes.iter().enumerate() {
-            let rows = &self.problem.still_alone(o, &chosen.y[o], rows);
+            let rows = &self.problem.still_isolated(o, &chosen.y[o], rows);
             let far = match levels.get(o) {
                 Some(Some(Note::HeavyTails { .. })) => continue,
                 Some(Some(_)) => Some(self.far_from_near(chosen, o, rows)),

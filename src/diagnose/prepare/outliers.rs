@@ -37,7 +37,7 @@ impl Problem<'_> {
 
     /// Of some rows of an output those that stand alone in what `y` leaves: what a model accounts for was no
     /// outlier, whatever an earlier one said. A free run may drift, so only neighbours are asked.
-    pub fn still_alone(&self, o: usize, y: &[f64], rows: &[usize]) -> Vec<usize> {
+    pub fn still_isolated(&self, o: usize, y: &[f64], rows: &[usize]) -> Vec<usize> {
         let known = &self.known[o];
         let off = |k: usize| if known[k] { self.y[o][k] - y[k] } else { 0.0 };
         let r: Vec<f64> = (0..self.len()).map(off).collect();
