@@ -6,8 +6,8 @@
 Works the exam of CONFIG off by plain processes, one a case, one after another; then by HyperQueue
 while every so many seconds something is killed with signal 9: the process of a task and the engine with
 all its workers by turns, the engine to be started again; compares the bytes. With --disk the
-results lie on a file system of that size (a tmpfs, which takes root), and once it is full to the last byte for
-five seconds.
+results lie on a file system of that size (a tmpfs, which takes root and is given back at the end), and once
+it is full to the last byte for five seconds.
 """
 
 import argparse
@@ -44,23 +44,31 @@ class Disk:
     def __init__(self, at, megabytes):
         at.mkdir(parents=True)
         subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={megabytes}m", "tmpfs", str(at)], check=True)
-        self.ballast, self.until, self.done = at / "ballast", None, 0
+        self.at, self.ballast, self.until, self.done = at, at / "ballast", None, 0
 
-    def turn(self, done):
-        """Fills it, and makes room again five seconds later; counts what was done meanwhile."""
+    def turn(self, done, enough):
+        """Fills it once enough is done, and makes room again five seconds later; counts what was done meanwhile."""
         if self.until is None:
-            self.until = time.time() + 5.0
-            self.done = -done
-            with open(self.ballast, "wb", buffering=0) as file:
-                for block in [1 << 20, 1 << 12, 1]:
-                    try:
-                        while file.write(b"0" * block) == block:
-                            pass
-                    except OSError:
-                        pass
+            if done > enough:
+                self.fill(done)
         elif self.ballast.exists() and time.time() > self.until:
             self.ballast.unlink()
             self.done += done
+
+    def fill(self, done):
+        """Writes until not one more byte fits."""
+        self.until, self.done = time.time() + 5.0, -done
+        with open(self.ballast, "wb", buffering=0) as file:
+            for block in [1 << 20, 1 << 12, 1]:
+                try:
+                    while file.write(b"0" * block) == block:
+                        pass
+                except OSError:
+                    pass
+
+    def close(self):
+        """Gives it back, with what lies on it."""
+        subprocess.run(["umount", str(self.at)], check=True)
 
 
 def spent():
@@ -106,9 +114,8 @@ def main():
     next_kill = began + arguments.kill_every
     while engine.poll() is None:
         time.sleep(0.05)
-        done = len(list((out / "marks").glob("*.json"))) if (out / "marks").exists() else 0
-        if disk and done > len(keys) // 3:
-            disk.turn(done)
+        if disk:
+            disk.turn(len(list((out / "marks").glob("*.json"))), len(keys) // 3)
         if time.time() < next_kill:
             continue
         if killed["task"] > killed["engine"]:
@@ -128,9 +135,11 @@ def main():
     same = all((folder / "plain/whole" / name).read_bytes() == (folder / "queue/whole" / name).read_bytes()
                for name in ["study.json", "cases.csv", "report.html"])
     full = f", disk full for 5 s, {disk.done} cases done in that time" if disk else ""
+    if disk:
+        disk.close()
     print(f"{len(keys)} cases: plain processes {plain:.1f} s ({plain_cpu:.1f} CPU s), one at a time; "
-          f"HyperQueue with {arguments.workers} workers {queue:.1f} s ({queue_cpu:.1f} CPU s), {killed['task']} tasks and {killed['engine']} engines killed"
-          f"{full}; same bytes: {same}")
+          f"HyperQueue with {arguments.workers} workers {queue:.1f} s ({queue_cpu:.1f} CPU s), "
+          f"{killed['task']} tasks and {killed['engine']} engines killed{full}; same bytes: {same}")
     sys.exit(0 if same and engine.returncode == 0 else 1)
 
 

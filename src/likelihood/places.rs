@@ -34,6 +34,7 @@ use crate::system::System;
 /// Places that get a noise of their own, and of which the laws are fitted.
 const LEADING: usize = 6;
 const FITTED: usize = 2;
+
 /// Ranks places and laws of what a system lacks on records of it.
 ///
 /// # Errors
@@ -87,8 +88,7 @@ impl Predictor {
         let null = self.renewed(&self.model, noise, 2)?;
         let wanted = Wanted { theta: true, seen: true, gate: Some(self.gate()) };
         let run = self.run(&self.model, &null.noise, wanted)?;
-        let quick = self.quick(&null.noise, run.log_likelihood);
-        let path = run.path;
+        let (path, value) = (run.path, run.log_likelihood);
         let all = self.spots(&path)?;
         let spots: Vec<Spotted> = match at {
             None => all,
@@ -115,13 +115,14 @@ impl Predictor {
             log_likelihood: null.log_likelihood,
         };
         let mut fitted: Vec<(Hypothesis, usize)> = vec![];
-        let mut done: Vec<usize> = vec![];
+        let (mut done, mut quick): (Vec<usize>, Option<Self>) = (vec![], None);
         for place in led.iter().filter(|led| led.value > 0.0) {
             if done.iter().filter(|&&s| s != place.spot).count() >= FITTED {
                 break;
             }
             done.push(place.spot);
-            fitted.extend(self.fitted(&quick, &path, &spots, place));
+            let quick = quick.get_or_insert_with(|| self.quick(&null.noise, value));
+            fitted.extend(self.fitted(quick, &path, &spots, place));
         }
         let sets = self.weighed(&nothing, fitted, &spots);
         Ok(Survey { null, places, sets })

@@ -92,12 +92,14 @@ pub(super) fn shifted(record: &Record, column: &str, samples: isize) -> Record {
 
 /// Log likelihood of records under the noise that they call for, at the sensors or inside the plant, each judged
 /// by its first samples (Ljung, "System Identification", 2nd ed., section 7.4).
-fn predicted_by(system: &System, records: &[Record]) -> f64 {
-    let of = |record: &Record| {
-        let part = record.slice(0..record.len().min(MOST));
-        criterion(system, &part).unwrap_or(f64::NEG_INFINITY)
-    };
-    records.iter().map(of).sum()
+fn log_likelihood(system: &System, records: &[Record]) -> f64 {
+    let of = |part: &Record| criterion(system, part).unwrap_or(f64::NEG_INFINITY);
+    first_samples(records).iter().map(of).sum()
+}
+
+/// The same records with no more than so many samples: some thousand tell as much as many.
+fn first_samples(records: &[Record]) -> Vec<Record> {
+    records.iter().map(|record| record.slice(0..record.len().min(MOST))).collect()
 }
 
 fn columns(records: &[Record]) -> Vec<String> {
@@ -130,7 +132,7 @@ pub(crate) fn flipped(system: &System, records: &[Record]) -> Result<Option<Faul
         return Ok(None);
     };
     // what a free run says of a plant that does not forget is chance
-    if !(predicted_by(system, turned) > predicted_by(system, records)) {
+    if !(log_likelihood(system, turned) > log_likelihood(system, records)) {
         return Ok(None);
     }
     let same = |t: &&(f64, String, Vec<Record>)| t.0 < (1.0 + SAME) * best;
@@ -145,8 +147,7 @@ pub(crate) fn flipped(system: &System, records: &[Record]) -> Result<Option<Faul
 /// asked), or another sampling time than stated. Whether something in the machine explains the
 /// same is for the search to say.
 pub(crate) fn retimed(system: &System, records: &[Record]) -> Result<Option<Fault>, EvaluateError> {
-    // some thousand samples tell as much as many
-    let part: Vec<Record> = records.iter().map(|r| r.slice(0..r.len().min(MOST))).collect();
+    let part = first_samples(records);
     let before = misfit(system, &part)?;
     if !(before > FAR) || !before.is_finite() {
         return Ok(None);

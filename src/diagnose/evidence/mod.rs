@@ -19,7 +19,7 @@ mod whitener;
 pub(crate) use laplace::occam;
 pub(crate) use noise::Autoregressive;
 pub(crate) use prior::{Choices, price, width};
-pub(crate) use savage_dickey::moved;
+pub(crate) use savage_dickey::has_moved;
 pub(crate) use stretches::Stretches;
 pub(crate) use tails::Tails;
 pub(crate) use variance::{Seen, VarianceFunction};

@@ -9,7 +9,7 @@
 
 /// Probability that a number moved, where moved and stayed are as probable before: it is `off` from where it
 /// began, known within a standard error, and was expected to be within `width` of it.
-pub(crate) fn moved(off: f64, error: f64, width: f64) -> f64 {
+pub(crate) fn has_moved(off: f64, error: f64, width: f64) -> f64 {
     // what data say little of is known from the prior
     let error = error.min(width);
     let log_odds = (error / width).ln() + 0.5 * (off / error).powi(2);
@@ -30,14 +30,14 @@ mod tests {
                 |variance: f64| (-0.5 * f64::powi(y, 2) / variance).exp() / variance.sqrt();
             let odds = density(s * s + w * w) / density(s * s);
             let variance: f64 = 1.0 / (1.0 / (s * s) + 1.0 / (w * w));
-            let found = moved(y * variance / (s * s), variance.sqrt(), w);
+            let found = has_moved(y * variance / (s * s), variance.sqrt(), w);
             assert_relative_eq!(found, odds / (1.0 + odds), epsilon = 1e-12);
         }
     }
 
     #[test]
     fn what_data_say_nothing_of_is_as_probable_as_before() {
-        assert_relative_eq!(moved(0.0, 1e9, 0.15), 0.5);
-        assert!(moved(1.0, 1e-3, 0.15) > 1.0 - 1e-12);
+        assert_relative_eq!(has_moved(0.0, 1e9, 0.15), 0.5);
+        assert!(has_moved(1.0, 1e-3, 0.15) > 1.0 - 1e-12);
     }
 }

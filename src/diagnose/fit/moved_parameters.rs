@@ -2,7 +2,7 @@
 
 use crate::candidates::naming::{parameter_effect, title_of};
 use crate::error::DiagnoseError;
-use crate::evidence::moved;
+use crate::evidence::has_moved;
 use crate::findings::cause::{Cause, LawPart, Site, Value, Wording};
 use crate::findings::causes::Scores;
 use crate::findings::context::Context;
@@ -87,7 +87,7 @@ impl Context<'_, '_> {
         let key = Key::Theta(p);
         let unknown = chosen.nuisance.unknown(self.problem, &chosen.fitted.model, key);
         let (from, width) = unknown.prior?;
-        let own = moved(chosen.fitted.model.theta[p] - from, chosen.error(key)?, width);
+        let own = has_moved(chosen.fitted.model.theta[p] - from, chosen.error(key)?, width);
         let off = &chosen.found.off;
         let single = off.single.get(p).copied().unwrap_or(0.0);
         Some((off.all * own + single).clamp(0.0, 1.0))

@@ -191,12 +191,9 @@ fn by_innovations(
     }
     // a likelihood is exact, a model is not: what it predicts must not get worse, where a free run predicts at
     // all (Forssell and Ljung, IEEE Trans. Automatic Control 45, 2000)
-    let gets_worse = || {
-        let both = left(problem, &prepared.start).zip(left(problem, &answer.fitted.model));
-        both.is_none_or(|(before, after)| (after / before).powi(2) > LEAVES)
-    };
-    let predicts = base.forgets().unwrap_or(true);
-    (!predicts || !gets_worse()).then_some(answer)
+    let both = left(problem, &prepared.start).zip(left(problem, &answer.fitted.model));
+    let is_no_worse = both.is_some_and(|(before, after)| (after / before).powi(2) <= LEAVES);
+    (is_no_worse || !base.forgets().unwrap_or(true)).then_some(answer)
 }
 
 /// Score that the innovations of an explanation follow from inputs before them, which those of the true

@@ -14,8 +14,7 @@ impl Problem<'_> {
         let time: Vec<f64> = (0..self.len()).map(|k| k as f64).collect();
         for o in 0..self.y.len() {
             let known = self.known[o].clone();
-            let off = |k: usize| if known[k] { self.y[o][k] - y[o][k] } else { 0.0 };
-            let mut r: Vec<f64> = (0..self.len()).map(off).collect();
+            let mut r = self.off(o, &y[o]);
             let seen = Seen { yhat: &y[o], time: &time, residual: &r, white: &r };
             if let Some(variance) = VarianceFunction::of(seen) {
                 let at = y[o].iter().zip(&time);
@@ -38,12 +37,20 @@ impl Problem<'_> {
     /// Of some rows of an output those that stand alone in what `y` leaves: what a model accounts for was no
     /// outlier, whatever an earlier one said. A free run may drift, so only neighbours are asked.
     pub fn still_isolated(&self, o: usize, y: &[f64], rows: &[usize]) -> Vec<usize> {
-        let known = &self.known[o];
-        let off = |k: usize| if known[k] { self.y[o][k] - y[k] } else { 0.0 };
-        let r: Vec<f64> = (0..self.len()).map(off).collect();
+        if rows.is_empty() {
+            return vec![];
+        }
+        let (known, r) = (&self.known[o], self.off(o, y));
         let far: Vec<f64> = r.iter().map(|v| v.abs()).collect();
         let apart = in_units(&apart(&r, &far, known), known);
         rows.iter().copied().filter(|&k| apart[k] > BEYOND).collect()
+    }
+
+    /// What `y` leaves of an output; 0 where nothing was measured.
+    fn off(&self, o: usize, y: &[f64]) -> Vec<f64> {
+        let known = self.known[o].iter();
+        let each = known.zip(&self.y[o]).zip(y);
+        each.map(|((known, measured), y)| if *known { measured - y } else { 0.0 }).collect()
     }
 }
 
