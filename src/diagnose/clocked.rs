@@ -1,23 +1,66 @@
-//! A wrong sampling time or a shifted column against a wrong model: which explains with less.
+//! A wrong sampling time or a shifted column against a wrong machine: the more probable hypothesis.
+//!
+//! A fault of the clock moves no reading, so that the densities of the same readings compare: log L -
+//! (numbers) / 2 ln(samples) - ln(choices), the clock being one name of the library more with one number
+//! (Schwarz, Annals of Statistics 6, 1978). What is as probable is said of the machine.
 
-use super::data_faults::Fault;
+use super::criteria::LOOK_ALIKE;
+use super::data_faults::{Fault, first_samples};
 use super::diagnosis::Diagnosis;
 use super::error::DiagnoseError;
+use super::evidence::Choices;
 use super::findings::hand_over::Searched;
-use super::fit::hypothesis::Track;
+use super::fit::nuisance::Key;
+use super::innovations::{criterion, free_run_criterion};
 use super::prepare::input_dependence::DEPENDS;
+use super::run::Chosen;
 use crate::data::Record;
+use crate::system::System;
 use crate::watch::Watch;
 
-/// A cause in the machine explains as much as a wrong clock if it removes so much less at most.
-const AS_MUCH: f64 = 0.02;
-/// Parameters named as wrong beside a wrong clock from which on they may be all that is wrong.
-const SEVERAL: usize = 2;
+/// The records that a hypothesis is judged by.
+struct Judged {
+    records: Vec<Record>,
+    /// Readings of their outputs.
+    readings: f64,
+    /// Log likelihood of a system on a record, less what its noise takes.
+    criterion: fn(&System, &Record) -> Option<f64>,
+}
+
+impl Judged {
+    /// Records judged with noise inside the plant, too, or with noise at the sensors alone.
+    fn new(records: &[Record], is_inside: bool) -> Self {
+        let records = first_samples(records);
+        let outputs = records.iter().flat_map(|record| &record.outputs);
+        let known = outputs.flat_map(|signal| &signal.values).filter(|v| v.is_finite());
+        let readings = known.count().max(1) as f64;
+        let criterion = if is_inside { criterion } else { free_run_criterion };
+        Self { readings, records, criterion }
+    }
+
+    fn log_likelihood(&self, system: &System) -> f64 {
+        let of = |record: &Record| (self.criterion)(system, record).unwrap_or(f64::NEG_INFINITY);
+        self.records.iter().map(of).sum()
+    }
+
+    /// What so many numbers take.
+    fn numbers(&self, count: usize) -> f64 {
+        0.5 * count as f64 * self.readings.ln()
+    }
+
+    /// Log likelihood of a search's answer, and what its numbers and choices take.
+    fn answer(&self, of: &Chosen<'_>) -> Result<(f64, f64), DiagnoseError> {
+        let Chosen { whole, chosen, .. } = of;
+        let extended = whole.context().extend(&chosen.fitted.model)?;
+        let moved = chosen.fitted.keys.iter().filter(|key| !matches!(key, Key::Start(..)));
+        let price = self.numbers(moved.count()) + chosen.found.choice;
+        Ok((self.log_likelihood(&extended), price))
+    }
+}
 
 impl Diagnosis<'_> {
-    /// A record whose clock seems to be wrong: if one cause in the machine explains as much, the
-    /// machine is to blame and the clock is another name of that. Parameters that have to move
-    /// whatever the clock says are to blame as well. Says whether the clock is to blame.
+    /// A record whose clock seems to be wrong: what is found, by the clock of the record or by the other,
+    /// whichever is more probable. Says whether the clock is to blame.
     pub(super) fn clocked(
         &self,
         records: &[Record],
@@ -25,31 +68,36 @@ impl Diagnosis<'_> {
         fault: &Fault,
         watch: &dyn Watch,
     ) -> Result<(Searched, bool), DiagnoseError> {
-        let as_much = |of: &Searched| {
-            of.causes.len() == 1 && of.gain.error_removed >= fault.removed - AS_MUCH
-        };
-        let machine = self.search(records, test, self.max_causes, watch)?;
-        if as_much(&machine) {
-            return Ok((machine.or_else(fault.alternative()), false));
-        }
-        let one = self.search(records, test, 1, watch)?;
-        if as_much(&one) {
-            return Ok((machine.or_else(fault.alternative()), false));
-        }
         let mended: Vec<Record> = records.iter().map(|r| fault.mend(r)).collect();
         let mended_test = test.map(|record| fault.mend(record));
-        let searched = self.search(&mended, mended_test.as_ref(), self.max_causes, watch)?;
-        if one.track == Track::ParametersFree && !searched.causes.is_empty() {
-            let nothing_left = machine.dependence < DEPENDS;
-            let parameters =
-                |of: &Searched| of.causes.iter().filter(|cause| cause.is_parameter()).count();
-            let laws = |of: &Searched| of.causes.len() - parameters(of);
-            // parameters that are wrong anyway may make up for a clock, however many it takes
-            let anyway = parameters(&searched) >= SEVERAL && laws(&machine) <= laws(&searched);
-            if nothing_left && (anyway || machine.causes.len() <= searched.causes.len() + 1) {
-                return Ok((machine.or_else(fault.alternative()), false));
+        let machine = self.answered(records, test, self.max_causes, watch)?;
+        let is_inside = machine.chosen.is_by_innovations();
+        let judged = |all: &[Record]| Judged::new(&self.used(all, test), is_inside);
+        let (by_record, by_other) = (judged(records), judged(&mended));
+        let (likelihood, price) = by_record.answer(&machine)?;
+        // a shifted column has fewer readings, each of the same density
+        let same = by_record.readings / by_other.readings;
+        let one = by_record.numbers(1) + Choices::default().price(false);
+        let alone = same * by_other.log_likelihood(self.system) - one;
+        let own = likelihood - price;
+        // where the machine leaves nothing but noise, no clock has a larger likelihood
+        let at_most = match machine.chosen.dependence < DEPENDS {
+            true => alone.max(likelihood - 2.0 * one),
+            false => f64::INFINITY,
+        };
+        let mut clock = alone;
+        if own < at_most && !watch.stopped() {
+            let other = self.answered(&mended, mended_test.as_ref(), self.max_causes, watch)?;
+            let (likelihood, price) = by_other.answer(&other)?;
+            clock = clock.max(same * likelihood - price - one);
+            if clock > own {
+                let searched = self.measured(other, &mended, mended_test.as_ref(), watch)?;
+                return Ok((searched, true));
             }
         }
-        Ok((searched, true))
+        let odds = (clock - own).exp();
+        let searched = self.measured(machine, records, test, watch)?;
+        let other = (odds > LOOK_ALIKE).then(|| fault.alternative(odds / (1.0 + odds)));
+        Ok((other.into_iter().fold(searched, Searched::or_else), false))
     }
 }

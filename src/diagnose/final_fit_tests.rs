@@ -48,6 +48,7 @@ fn what_diverges_in_the_end_loses_its_last_cause() {
     let found = Found {
         model,
         slots,
+        choice: 0.0,
         first: None,
         left_out: None,
         spikes: vec![vec![]],

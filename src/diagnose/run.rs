@@ -1,5 +1,6 @@
 //! One diagnosis from end to end.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use super::data_faults::coarse;
@@ -191,24 +192,54 @@ impl Diagnosis<'_> {
         most: usize,
         watch: &dyn Watch,
     ) -> Result<Searched, DiagnoseError> {
-        let kept: Vec<Record>;
-        let (used, test, share) = match test {
+        let answer = self.answered(records, test, most, watch)?;
+        self.measured(answer, records, test, watch)
+    }
+
+    /// What a search names, its gain not yet measured.
+    pub(super) fn answered(
+        &self,
+        records: &[Record],
+        test: Option<&Record>,
+        most: usize,
+        watch: &dyn Watch,
+    ) -> Result<Chosen<'_>, DiagnoseError> {
+        let share = if test.is_some() { FIT } else { FIT_OF_REST };
+        self.chosen(&self.used(records, test), share, most, watch)
+    }
+
+    /// The part of records that may be searched: all but what is kept for the test.
+    pub(super) fn used<'r>(
+        &self,
+        records: &'r [Record],
+        test: Option<&Record>,
+    ) -> Cow<'r, [Record]> {
+        if test.is_some() { records.into() } else { without_test(records).into() }
+    }
+
+    /// What a search named, with its gain on the data that were not used.
+    pub(super) fn measured(
+        &self,
+        answer: Chosen<'_>,
+        records: &[Record],
+        test: Option<&Record>,
+        watch: &dyn Watch,
+    ) -> Result<Searched, DiagnoseError> {
+        let used = self.used(records, test);
+        let test = match test {
             Some(record) => {
-                let counted = Counted::After(self.init);
-                (records, TestData { records: vec![record.clone()], counted }, FIT)
+                TestData { records: vec![record.clone()], counted: Counted::After(self.init) }
             }
             None => {
-                kept = without_test(records);
                 let counted = Counted::From(records.iter().map(kept_from).collect());
-                let test = TestData { records: records.to_vec(), counted };
-                (&kept[..], test, FIT_OF_REST)
+                TestData { records: records.to_vec(), counted }
             }
         };
-        let Chosen { whole, looked_at, chosen, other } = self.chosen(used, share, most, watch)?;
+        let Chosen { whole, looked_at, chosen, other } = answer;
         watch.report(0.97, "measuring the gain");
         let firsts = firsts(records);
         let (start, fixed) = (&whole.start, &self.allowed.fixed);
-        let from = Source { start, test: &test, used, firsts: &firsts, fixed, watch };
+        let from = Source { start, test: &test, used: &used, firsts: &firsts, fixed, watch };
         let searched = whole.context().findings(&chosen, other.as_ref(), &from)?;
         Ok(innovations::completed(looked_at.as_ref().unwrap_or(&whole), &chosen, searched, watch))
     }

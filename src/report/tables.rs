@@ -202,8 +202,8 @@ fn left(page: &mut Page, finding: &Finding) {
             if dependence > 3.0 { "it is not only noise" } else { "below 3: it may well be noise" }
         ),
     );
-    for (name, left) in &finding.left {
-        page.element("p", "note", &sentences::left(name, left));
+    for left in sentences::all_left(finding) {
+        page.element("p", "note", &left);
     }
     if let Some(held) = sentences::held(finding) {
         page.element("p", "note", &held);

@@ -98,7 +98,7 @@ fn log_likelihood(system: &System, records: &[Record]) -> f64 {
 }
 
 /// The same records with no more than so many samples: some thousand tell as much as many.
-fn first_samples(records: &[Record]) -> Vec<Record> {
+pub(crate) fn first_samples(records: &[Record]) -> Vec<Record> {
     records.iter().map(|record| record.slice(0..record.len().min(MOST))).collect()
 }
 

@@ -15,7 +15,7 @@ use crate::findings::cause::{Alternative, Cause, ColumnFault, Site, Unweighed, V
 use crate::findings::causes::of_column;
 use crate::validate::noise_floor::NoiseFloor;
 
-pub(crate) use column::{flipped, retimed};
+pub(crate) use column::{first_samples, flipped, retimed};
 pub(crate) use dead::dead;
 pub(crate) use equal_readings::{Stretch, stretches};
 pub(crate) use rows::{gross_errors, strike};
@@ -112,7 +112,7 @@ impl Fault {
         });
         let parameters = value.into_iter().collect();
         let rows = self.rows.iter().map(|k| k + 1).collect();
-        let other = |into: &String| Alternative { into: into.clone(), ..self.alternative() };
+        let other = |into: &String| Alternative { into: into.clone(), ..self.other_name() };
         Cause {
             error_removed: self.removed,
             indistinguishable: self.or_in.iter().map(other).collect(),
@@ -124,8 +124,12 @@ impl Fault {
         }
     }
 
-    /// The fault as another name of a cause.
-    pub fn alternative(&self) -> Alternative {
+    /// The fault as another name of a cause, and how probable it is instead.
+    pub fn alternative(&self, probability: f64) -> Alternative {
+        self.other_name().weighed(probability)
+    }
+
+    fn other_name(&self) -> Alternative {
         Alternative {
             effect: self.kind.effect().into(),
             into: self.into.clone(),

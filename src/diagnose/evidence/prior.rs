@@ -23,6 +23,13 @@ pub(crate) struct Choices {
     pub laws: usize,
 }
 
+/// Those of some library, before it is known.
+impl Default for Choices {
+    fn default() -> Self {
+        Self { names: 100, laws: 10 }
+    }
+}
+
 impl Choices {
     /// Those of a library.
     pub fn of(library: &[Arc<Candidate>]) -> Self {

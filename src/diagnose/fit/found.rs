@@ -87,6 +87,8 @@ pub(crate) struct Off {
 pub(crate) struct Found {
     pub model: Model,
     pub slots: Vec<Slot>,
+    /// Negative logarithm of its prior probability: what its causes were chosen from.
+    pub choice: f64,
     /// The ranking of candidates about the model without causes.
     pub first: Option<Screen>,
     /// Laws that were judged alone only.

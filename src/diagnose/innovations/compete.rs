@@ -14,6 +14,13 @@ pub(crate) fn criterion(system: &System, record: &Record) -> Option<f64> {
     Some(Rivals::of(&predictor).best()).filter(|best| best.is_finite())
 }
 
+/// The same where all noise sits at the sensors: the error of a free run is autoregressive.
+pub(crate) fn free_run_criterion(system: &System, record: &Record) -> Option<f64> {
+    let predictor = Predictor::new(system, std::slice::from_ref(record)).ok()?;
+    let fitted = predictor.fit_free_run().ok()?;
+    Some(fitted.criterion()).filter(|value| value.is_finite())
+}
+
 /// The predictor of the model that is diagnosed, on the samples of a problem.
 pub(super) fn predictor(
     problem: &Problem<'_>,

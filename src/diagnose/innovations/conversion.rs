@@ -79,6 +79,7 @@ pub(super) fn finished(
         found: Found {
             model: model.clone(),
             slots,
+            choice: found.choice,
             first: None,
             left_out: None,
             spikes: problem.spikes(),

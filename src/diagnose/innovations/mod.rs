@@ -18,6 +18,6 @@ mod conversion;
 mod missing;
 mod reconsidered;
 
-pub(crate) use compete::criterion;
+pub(crate) use compete::{criterion, free_run_criterion};
 pub(crate) use missing::completed;
 pub(crate) use reconsidered::{finish, search};

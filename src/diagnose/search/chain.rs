@@ -97,7 +97,7 @@ fn one_round(study: &mut Study<'_, '_>, best: Fit, round: usize, last: bool) -> 
     let mut items = std::mem::take(&mut study.items);
     // what memory did not hold may explain more beside other causes
     let is_stale = study.left_out.is_some() && study.about != causes(&ground.fit);
-    if round == 0 || is_stale {
+    if round == 0 || is_stale || items.is_empty() {
         drop(std::mem::take(&mut items));
         let with = (&*study.problem, study.nominal);
         let made = dictionary(with, &ground.about(), &study.candidates, None, study.watch);

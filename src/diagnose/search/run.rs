@@ -14,7 +14,7 @@ use super::veto::vetoed;
 use crate::candidates::candidate::Wire;
 use crate::candidates::library::Allowed;
 use crate::candidates::screen::Screen;
-use crate::evidence::NoiseModel;
+use crate::evidence::{NoiseModel, price};
 use crate::fit::found::{Found, Off};
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Added, Grain, Model, Part, Problem};
@@ -108,23 +108,34 @@ fn families(study: &mut Study<'_, '_>) {
         searched(study, false, 1);
         return;
     }
-    let parameters_first = is_behind(study);
-    if parameters_first {
-        free_chain(study);
-        if let Some(model) = study.beam.best_of(false).map(|fit| fit.model.clone()) {
-            study.stand_on(&model);
-        }
+    // where a first round with parameters held leaves more than white noise, the other family has one too
+    let is_coloured = study.beam.best().is_some_and(|best| best.noise.is_coloured());
+    let is_open = is_coloured && !is_behind(study);
+    if is_open {
+        stand_on_best(study, true, "letting parameters move");
+        chain(study, true, 0..1);
+    }
+    if is_behind(study) {
+        free_chain(study, usize::from(is_open));
+        stand_on_best(study, false, "holding parameters");
         // a law that stands beside what was found with parameters free may do without them
         chain(study, false, 0..2);
         let best = |free: bool| study.beam.best_of(free).map(Fit::posterior);
         let near = best(false).zip(best(true)).is_some_and(|(held, free)| held > free - NEAR);
-        let depends = |fit: &Fit| study.dependence(&fit.model) > DEPENDS;
-        if !near && !study.beam.best().is_some_and(depends) {
+        if !near && !leaves_more_than_noise(study) {
             return;
         }
         searched(study, false, 1);
         toggle(study);
         return;
+    }
+    if is_open {
+        // the library and its columns are those of the other family
+        stand_on_best(study, false, "holding parameters");
+        if let Some(best) = study.beam.best_of(false).cloned() {
+            study.look_up(&best);
+        }
+        study.items.clear();
     }
     searched(study, false, 1);
     toggle(study);
@@ -135,20 +146,31 @@ fn families(study: &mut Study<'_, '_>) {
     let many = held.causes() >= SEVERAL;
     let model = if near { &free.model } else { &held.model };
     if many || near || study.dependence(model) > DEPENDS {
-        free_chain(study);
+        free_chain(study, 0);
     }
 }
 
-fn free_chain(study: &mut Study<'_, '_>) {
+/// Whether what the best leaves depends on the inputs.
+fn leaves_more_than_noise(study: &Study<'_, '_>) -> bool {
+    study.beam.best().is_some_and(|best| study.dependence(&best.model) > DEPENDS)
+}
+
+/// The chain with parameters free, from a round on.
+fn free_chain(study: &mut Study<'_, '_>, from: usize) {
     if study.watch.stopped() {
         return;
     }
-    study.watch.report(0.5, "letting parameters move");
-    if let Some(model) = study.beam.best_of(true).map(|fit| fit.model.clone()) {
+    stand_on_best(study, true, "letting parameters move");
+    searched(study, true, from);
+    toggle(study);
+}
+
+/// Goes on from the best of a family.
+fn stand_on_best(study: &mut Study<'_, '_>, free: bool, what: &str) {
+    study.watch.report(0.5, what);
+    if let Some(model) = study.beam.best_of(free).map(|fit| fit.model.clone()) {
         study.stand_on(&model);
     }
-    searched(study, true, 0);
-    toggle(study);
 }
 
 /// A chain, and on from what its places are asked to be, until that is nothing better.
@@ -205,6 +227,7 @@ fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched
     let found = Found {
         slots: slots(study.problem, &study.beam, &headline),
         model: headline.model.clone(),
+        choice: price(&headline.model, headline.free, study.choices),
         first,
         left_out: study.left_out,
         spikes: study.problem.spikes(),

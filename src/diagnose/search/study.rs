@@ -20,9 +20,6 @@ use crate::prepare::operating_range::Nominal;
 use crate::statistics::strongest;
 use crate::watch::Watch;
 
-/// Names of the library, and laws of a place, before it is known.
-const NAMES: usize = 100;
-const LAWS: usize = 10;
 /// Lines of the residual that hums are tried at.
 const LINES: usize = 3;
 /// Distance from the best within which fits are judged again when the data are looked at anew.
@@ -76,7 +73,7 @@ impl<'a, 'b> Study<'a, 'b> {
             disturbance,
             beam: Beam::default(),
             candidates: vec![],
-            choices: Choices { names: NAMES, laws: LAWS },
+            choices: Choices::default(),
             items: vec![],
             left_out: None,
             about: vec![],

@@ -2,8 +2,8 @@
 
 use super::cause::phrase;
 use crate::diagnose::{
-    Alternative, Cause, ColumnFault, Finding, Left, NotFound, RecordFacts, Unweighed, Verdict,
-    Withdrawn,
+    Alternative, Cause, ColumnFault, Finding, Left, NotFound, Note, RecordFacts, Unweighed,
+    Verdict, Withdrawn,
 };
 use crate::digits::{number, percent, rough, spaced};
 use crate::evaluate::Metrics;
@@ -21,7 +21,7 @@ pub fn details(finding: &Finding) -> Vec<String> {
         Some(rmse(finding, name, before, after))
     }));
     lines.extend(gain(finding));
-    lines.extend(finding.left.iter().map(|(name, of)| left(name, of)));
+    lines.extend(all_left(finding));
     lines.extend(data_fault(finding));
     lines.extend(held(finding));
     lines.extend(super::notes(finding));
@@ -96,8 +96,28 @@ pub fn gain(finding: &Finding) -> Option<String> {
     ))
 }
 
+/// What is left of every output. Where the plant itself is disturbed, what a simulation leaves tells of the
+/// disturbance, not of the model.
+pub fn all_left(finding: &Finding) -> Vec<String> {
+    let is_disturbed = finding.notes.iter().any(|note| matches!(note, Note::Inside { .. }));
+    let one = |(name, of): (&String, &Left)| match of.ratio_to_noise {
+        Some(ratio) if is_disturbed => left_by_disturbance(name, ratio),
+        _ => left(name, of),
+    };
+    finding.left.iter().map(one).collect()
+}
+
+/// `A simulation of angle is off by 6.9 times the noise of its sensor: ...`
+pub(super) fn left_by_disturbance(name: &str, ratio: f64) -> String {
+    format!(
+        "A simulation of {name} is off by {}: it knows nothing of what disturbs the plant, and says \
+         nothing of the model by that.",
+        over_noise(ratio)
+    )
+}
+
 /// `What is left of angle is 1.03 times the noise, and white.`
-pub fn left(name: &str, left: &Left) -> String {
+pub(super) fn left(name: &str, left: &Left) -> String {
     let colour = match left.white {
         true => "white: a sample says nothing of the next".into(),
         false => format!("coloured (score {:.0}): a sample predicts the next", left.score),

@@ -220,7 +220,7 @@ fn faults_of_columns() {
 
 #[test]
 fn what_is_left_and_what_was_supposed() {
-    let of = |ratio_to_noise, white| left("y", &Left { ratio_to_noise, white, score: 826.4 });
+    let of = |ratio_to_noise, white| rest::left("y", &Left { ratio_to_noise, white, score: 826.4 });
     assert_eq!(
         of(Some(1.03), true),
         "What is left of y is 1.0 times the noise, and white: a sample says nothing of the next."
@@ -230,6 +230,11 @@ fn what_is_left_and_what_was_supposed() {
         of(Some(0.68), true).starts_with("What is left of y is no more than the noise, and white")
     );
     assert!(of(None, false).contains("the noise is not known"));
+    let disturbed = rest::left_by_disturbance("y", 6.94);
+    assert!(
+        disturbed.starts_with("A simulation of y is off by 6.9 times the noise: "),
+        "{disturbed}"
+    );
     let facts = RecordFacts { records: 1, samples: 400, sampling_time: 0.1, test_samples: None };
     assert!(record(&facts).starts_with("400 samples of one record, 0.1000 s apart; "));
 }
