@@ -211,6 +211,21 @@ impl<'a, 'b> Study<'a, 'b> {
             let wishes: Vec<Wish> = close.map(Wish::from).collect();
             self.fit_and_keep(free, &wishes, iterations);
         }
+        self.nest(iterations);
+    }
+
+    /// Fits what is left of the best without each of its causes, from where it stands, until that is not
+    /// better: a model that holds another is compared with it from the same hill of the likelihood.
+    fn nest(&mut self, iterations: usize) {
+        while let Some(best) = self.beam.best().cloned() {
+            let less = |i| Wish { model: best.model.without(i), noise: best.noise.clone() };
+            let wishes: Vec<Wish> =
+                (best.model.known()..best.model.added.len()).map(less).collect();
+            self.fit_and_keep(best.free, &wishes, iterations);
+            if self.beam.best().is_none_or(|now| now.key() == best.key()) {
+                return;
+            }
+        }
     }
 
     /// Takes in all candidates for what a model leaves, with finer thresholds where they are blended in.
