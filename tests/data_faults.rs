@@ -132,6 +132,22 @@ fn another_sampling_time_than_stated() {
     assert!((cause.parameters[0].value - 0.1).abs() < 1e-3, "{:?}", cause.parameters);
 }
 
+/// What the machine lacks is named beside the clock, which no parameter of it stands for.
+#[test]
+fn friction_beside_another_sampling_time_than_stated() {
+    let friction = hidden!("coulomb_friction", "torque_on_arm", Some("rate"), |s| {
+        format!("{{ level = {:?}, width = 0.02 }}", -0.02 * s)
+    });
+    let (_, mut record) = PENDULUM.guilty(&[&friction], Conditions { seed: 15, g: 2.0, ..USUAL });
+    let right = record.sampling_time;
+    record.sampling_time = 0.85 * right;
+    let finding = PENDULUM.diagnose(&record);
+    let cause = the(&finding, "sampling_time");
+    assert!((cause.parameters[0].value / right - 1.0).abs() < 0.01, "{:?}", cause.parameters);
+    let in_machine = finding.causes.iter().find(|cause| !cause.is_data_fault()).unwrap();
+    assert!(friction.is_named(in_machine), "{}", names(&finding));
+}
+
 #[test]
 fn a_cause_behind_faults_of_the_data() {
     let friction = hidden!("coulomb_friction", "torque_on_arm", Some("rate"), |s| {
