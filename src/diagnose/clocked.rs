@@ -28,7 +28,7 @@ struct Judged {
 }
 
 impl Judged {
-    /// Records judged with noise inside the plant, too, or with noise at the sensors alone.
+    /// Records judged with noise inside the plant, too, or with noise at the sensors only.
     fn new(records: &[Record], is_inside: bool) -> Self {
         let records = first_samples(records);
         let outputs = records.iter().flat_map(|record| &record.outputs);
@@ -78,14 +78,14 @@ impl Diagnosis<'_> {
         // a shifted column has fewer readings, each of the same density
         let same = by_record.readings / by_other.readings;
         let one = by_record.numbers(1) + Choices::default().price(false);
-        let alone = same * by_other.log_likelihood(self.system) - one;
+        let bare = same * by_other.log_likelihood(self.system) - one;
         let own = likelihood - price;
         // where the machine leaves nothing but noise, no clock has a larger likelihood
         let at_most = match machine.chosen.dependence < DEPENDS {
-            true => alone.max(likelihood - 2.0 * one),
+            true => bare.max(likelihood - 2.0 * one),
             false => f64::INFINITY,
         };
-        let mut clock = alone;
+        let mut clock = bare;
         if own < at_most && !watch.stopped() {
             let other = self.answered(&mended, mended_test.as_ref(), self.max_causes, watch)?;
             let (likelihood, price) = by_other.answer(&other)?;

@@ -253,12 +253,15 @@ impl Diagnosis<'_> {
         most: usize,
         watch: &dyn Watch,
     ) -> Result<Chosen<'_>, DiagnoseError> {
-        let mut whole = Prepared::new(self.system, used, share)?.within(self.memory);
+        let mut whole =
+            Prepared::new(self.system, used, share)?.within(self.memory).allowing(&self.allowed);
         let Some(windows) = windows(used) else {
             let (chosen, other) = innovations::search(&mut whole, &self.allowed, most, watch)?;
             return Ok(Chosen { whole, looked_at: None, chosen, other });
         };
-        let mut part = Prepared::new(self.system, &windows, share)?.within(self.memory);
+        let mut part = Prepared::new(self.system, &windows, share)?
+            .within(self.memory)
+            .allowing(&self.allowed);
         let (chosen, other) = innovations::search(&mut part, &self.allowed, most, watch)?;
         watch.report(0.95, "fitting to all samples");
         let chosen = innovations::finish(&mut whole, &self.allowed, chosen)?;

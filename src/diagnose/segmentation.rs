@@ -76,8 +76,9 @@ impl Diagnosis<'_> {
         };
         let step = first.sampling_time;
         let count = stretches.len();
-        let mut prepared =
-            Prepared::in_stretches(self.system, &stretches, FIT)?.within(self.memory);
+        let mut prepared = Prepared::in_stretches(self.system, &stretches, FIT)?
+            .within(self.memory)
+            .allowing(&self.allowed);
         let chosen = prepared.search(&self.allowed, self.max_causes, watch)?;
         watch.report(0.97, "measuring the gain");
         let test = TestData { records: tested, counted: Counted::All };

@@ -1,5 +1,6 @@
 //! What findings are told from: a search's problem, its records, and the data that score.
 
+use crate::candidates::library::Allowed;
 use crate::data::Record;
 use crate::fit::problem::{Model, Problem};
 use crate::prepare::joined_records::Joined;
@@ -14,6 +15,8 @@ pub(crate) struct Context<'a, 'b> {
     pub problem: &'a Problem<'b>,
     pub nominal: &'a Nominal,
     pub joined: &'a Joined,
+    /// What may be named.
+    pub allowed: &'a Allowed,
 }
 
 /// Where findings are from: the records that were used, and those that score.

@@ -90,6 +90,7 @@ impl Context<'_, '_> {
                 _ => own.places.output,
             };
             let is_curve = may_stand
+                && self.allowed.effect(card.name)
                 && own.mechanism == Mechanism::Law
                 && own.states == 0
                 && !matches!(own.needs, Needs::Time | Needs::Nothing)

@@ -23,6 +23,8 @@ pub(crate) struct Prepared<'a> {
     /// The baseline with fitted initial states.
     pub start: Model,
     pub nominal: Nominal,
+    /// What may be named.
+    allowed: Allowed,
     source: String,
 }
 
@@ -69,7 +71,8 @@ impl<'a> Prepared<'a> {
         }
         let nominal = Nominal::new(&problem, &start).ok_or_else(|| diverges(&source))?;
         problem.coarsen(&start);
-        Ok(Self { joined, problem, start, nominal, source })
+        let allowed = Allowed::default();
+        Ok(Self { joined, problem, start, nominal, allowed, source })
     }
 
     /// The same with so much memory to work in.
@@ -79,10 +82,17 @@ impl<'a> Prepared<'a> {
         self
     }
 
+    /// The same where only some effects may be named.
+    #[must_use]
+    pub fn allowing(mut self, allowed: &Allowed) -> Self {
+        self.allowed = allowed.clone();
+        self
+    }
+
     /// What tells of the findings.
     pub fn context(&self) -> Context<'_, 'a> {
-        let Self { problem, nominal, joined, .. } = self;
-        Context { system: problem.system, problem, nominal, joined }
+        let Self { problem, nominal, joined, allowed, .. } = self;
+        Context { system: problem.system, problem, nominal, joined, allowed }
     }
 
     /// What a search finds, fitted to all data.
