@@ -95,9 +95,9 @@ impl Diagnosis<'_> {
                 return Ok((searched, true));
             }
         }
-        let odds = (clock - own).exp();
+        let probability = 1.0 / (1.0 + (own - clock).exp());
         let searched = self.measured(machine, records, test, watch)?;
-        let other = (odds > LOOK_ALIKE).then(|| fault.alternative(odds / (1.0 + odds)));
+        let other = (probability > LOOK_ALIKE).then(|| fault.alternative(probability));
         Ok((other.into_iter().fold(searched, Searched::or_else), false))
     }
 }

@@ -15,7 +15,12 @@ use crate::effect::Size;
 pub fn cause(cause: &Cause) -> String {
     let mut text = match &cause.wording.fault {
         Some(fault) => column::sentence(cause, *fault),
-        None => format!("{}{}{}.", body(cause), sure(cause), needed(cause)),
+        None => format!(
+            "{}{}{}.",
+            body(cause),
+            sure(cause.probability, cause.place_probability),
+            needed(cause)
+        ),
     };
     if cause.wording.rectifies {
         text += &format!(" So {} is read as its absolute value (a rectifier).", cause.into);
@@ -60,11 +65,18 @@ fn is_either_resolved(cause: &Cause, names: [&str; 2]) -> bool {
     own.any(|v| v.std_error.is_none_or(|error| v.value.abs() > HALF * error))
 }
 
-/// How sure the law is, where hypotheses were compared: ` (98 %)`.
-fn sure(cause: &Cause) -> String {
+/// How sure the law is, where hypotheses were compared: ` (98 % sure)`. Of a law that is less probable than
+/// all others of its place together, also how sure the place is.
+fn sure(law: Option<f64>, place: Option<f64>) -> String {
     // no comparison of models makes a cause certain
     let said = |p: f64| if p > 0.995 { "> 99 %".into() } else { percent(p) };
-    cause.probability.map_or_else(String::new, |p| format!(" ({} sure)", said(p)))
+    let Some(law) = law else { return String::new() };
+    match place {
+        Some(place) if law < 0.5 * place => {
+            format!(" ({} sure; {} that a law acts there)", said(law), said(place))
+        }
+        _ => format!(" ({} sure)", said(law)),
+    }
 }
 
 /// What it is needed for, which is no share of a whole: causes that make up for each other are
@@ -264,4 +276,16 @@ fn lower(title: &str) -> String {
 pub fn place_of(cause: &Cause) -> String {
     let Wording { title, site, .. } = &cause.wording;
     phrase(title, &cause.effect, &cause.into, cause.of.as_deref(), *site)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_place_may_be_surer_than_its_law() {
+        assert_eq!(sure(None, None), "");
+        assert_eq!(sure(Some(0.98), Some(0.999)), " (98 % sure)");
+        assert_eq!(sure(Some(0.19), Some(0.999)), " (19 % sure; > 99 % that a law acts there)");
+    }
 }
