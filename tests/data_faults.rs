@@ -132,7 +132,7 @@ fn another_sampling_time_than_stated() {
     assert!((cause.parameters[0].value - 0.1).abs() < 1e-3, "{:?}", cause.parameters);
 }
 
-/// What the machine lacks is named beside the clock, which no parameter of it stands for.
+/// Where the clock is most of the error, what the machine lacks is named beside it.
 #[test]
 fn friction_beside_another_sampling_time_than_stated() {
     let friction = hidden!("coulomb_friction", "torque_on_arm", Some("rate"), |s| {

@@ -6,7 +6,7 @@
 
 use super::criteria::LOOK_ALIKE;
 use super::data_faults::{Fault, first_samples};
-use super::diagnosis::Diagnosis;
+use super::diagnosis::{Diagnosis, searchable};
 use super::error::DiagnoseError;
 use super::evidence::Choices;
 use super::findings::hand_over::Searched;
@@ -72,7 +72,7 @@ impl Diagnosis<'_> {
         let mended_test = test.map(|record| fault.mend(record));
         let machine = self.answered(records, test, self.max_causes, watch)?;
         let is_inside = machine.chosen.is_by_innovations();
-        let judged = |all: &[Record]| Judged::new(&self.used(all, test), is_inside);
+        let judged = |all: &[Record]| Judged::new(&searchable(all, test), is_inside);
         let (by_record, by_other) = (judged(records), judged(&mended));
         let (likelihood, price) = by_record.answer(&machine)?;
         // a shifted column has fewer readings, each of the same density

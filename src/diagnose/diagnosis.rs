@@ -1,5 +1,7 @@
 //! What is asked of a diagnosis.
 
+use std::borrow::Cow;
+
 use super::candidates::library::Allowed;
 use crate::data::Record;
 use crate::evaluate::Init;
@@ -19,9 +21,13 @@ pub(super) fn kept_from(record: &Record) -> usize {
     ((1.0 - TEST_OF_ALL) * record.len() as f64) as usize
 }
 
-/// Records without what is kept for the test where there is no other.
-pub(super) fn without_test(records: &[Record]) -> Vec<Record> {
-    records.iter().map(|record| record.slice(0..kept_from(record))).collect()
+/// The part of records that may be searched: all where there is a test record, else all but what is kept for
+/// the test.
+pub(super) fn searchable<'r>(records: &'r [Record], test: Option<&Record>) -> Cow<'r, [Record]> {
+    match test {
+        Some(_) => records.into(),
+        None => records.iter().map(|record| record.slice(0..kept_from(record))).collect(),
+    }
 }
 
 /// Finds what a model's simulation gets wrong on a record, and names it.

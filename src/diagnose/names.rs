@@ -6,7 +6,7 @@
 //! What is measured of names afterwards is left out: the gain on samples that were kept for the test,
 //! p-values, shares, noise floors, the missing force, curves, other records.
 
-use super::diagnosis::{Diagnosis, FIT_OF_REST, kept_from, without_test};
+use super::diagnosis::{Diagnosis, searchable};
 use super::error::DiagnoseError;
 use super::findings::cause::Cause;
 use super::findings::context::Source;
@@ -16,7 +16,6 @@ use super::prepare::joined_records::firsts;
 use super::prepare::windows::thinned;
 use super::run::Chosen;
 use super::segmentation::horizon;
-use super::validate::test_error::{Counted, TestData};
 use crate::data::Record;
 use crate::watch::Watch;
 
@@ -68,16 +67,13 @@ impl Diagnosis<'_> {
         held: bool,
         watch: &dyn Watch,
     ) -> Result<Vec<Cause>, DiagnoseError> {
-        let used = without_test(records);
-        let Chosen { whole, chosen, .. } =
-            self.chosen(&used, FIT_OF_REST, self.max_causes, watch)?;
+        let Chosen { whole, chosen, .. } = self.answered(records, None, self.max_causes, watch)?;
         let context = whole.context();
         let mut causes = context.names(&chosen);
         if held {
-            let counted = Counted::From(records.iter().map(kept_from).collect());
-            let test = TestData { records: records.to_vec(), counted };
-            let (start, fixed, firsts) = (&whole.start, &self.allowed.fixed, firsts(records));
-            let from = Source { start, test: &test, used: &used, firsts: &firsts, fixed, watch };
+            let (used, test) = (searchable(records, None), self.scoring(records, None));
+            let (start, firsts) = (&whole.start, firsts(records));
+            let from = Source { start, test: &test, used: &used, firsts: &firsts, watch };
             context.held_instead(&chosen, &from, &mut causes);
         }
         Ok(causes)

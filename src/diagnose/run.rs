@@ -1,10 +1,9 @@
 //! One diagnosis from end to end.
 
-use std::borrow::Cow;
 use std::time::Instant;
 
 use super::data_faults::coarse;
-use super::diagnosis::{Diagnosis, FIT, FIT_OF_REST, kept_from, without_test};
+use super::diagnosis::{Diagnosis, FIT, FIT_OF_REST, kept_from, searchable};
 use super::error::DiagnoseError;
 use super::findings::context::Source;
 use super::findings::distortion::distortion;
@@ -205,16 +204,20 @@ impl Diagnosis<'_> {
         watch: &dyn Watch,
     ) -> Result<Chosen<'_>, DiagnoseError> {
         let share = if test.is_some() { FIT } else { FIT_OF_REST };
-        self.chosen(&self.used(records, test), share, most, watch)
+        self.chosen(&searchable(records, test), share, most, watch)
     }
 
-    /// The part of records that may be searched: all but what is kept for the test.
-    pub(super) fn used<'r>(
-        &self,
-        records: &'r [Record],
-        test: Option<&Record>,
-    ) -> Cow<'r, [Record]> {
-        if test.is_some() { records.into() } else { without_test(records).into() }
+    /// The data that score: a record of their own, or what is kept of the others.
+    pub(super) fn scoring(&self, records: &[Record], test: Option<&Record>) -> TestData {
+        match test {
+            Some(record) => {
+                TestData { records: vec![record.clone()], counted: Counted::After(self.init) }
+            }
+            None => {
+                let counted = Counted::From(records.iter().map(kept_from).collect());
+                TestData { records: records.to_vec(), counted }
+            }
+        }
     }
 
     /// What a search named, with its gain on the data that were not used.
@@ -225,21 +228,12 @@ impl Diagnosis<'_> {
         test: Option<&Record>,
         watch: &dyn Watch,
     ) -> Result<Searched, DiagnoseError> {
-        let used = self.used(records, test);
-        let test = match test {
-            Some(record) => {
-                TestData { records: vec![record.clone()], counted: Counted::After(self.init) }
-            }
-            None => {
-                let counted = Counted::From(records.iter().map(kept_from).collect());
-                TestData { records: records.to_vec(), counted }
-            }
-        };
+        let (used, test) = (searchable(records, test), self.scoring(records, test));
         let Chosen { whole, looked_at, chosen, other } = answer;
         watch.report(0.97, "measuring the gain");
         let firsts = firsts(records);
-        let (start, fixed) = (&whole.start, &self.allowed.fixed);
-        let from = Source { start, test: &test, used: &used, firsts: &firsts, fixed, watch };
+        let start = &whole.start;
+        let from = Source { start, test: &test, used: &used, firsts: &firsts, watch };
         let searched = whole.context().findings(&chosen, other.as_ref(), &from)?;
         Ok(innovations::completed(looked_at.as_ref().unwrap_or(&whole), &chosen, searched, watch))
     }

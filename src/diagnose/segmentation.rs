@@ -83,8 +83,8 @@ impl Diagnosis<'_> {
         watch.report(0.97, "measuring the gain");
         let test = TestData { records: tested, counted: Counted::All };
         let begin: Vec<usize> = begin.iter().map(|&(r, from)| firsts[r] + from).collect();
-        let (start, fixed) = (&prepared.start, &self.allowed.fixed);
-        let from = Source { start, test: &test, used: &stretches, firsts: &begin, fixed, watch };
+        let start = &prepared.start;
+        let from = Source { start, test: &test, used: &stretches, firsts: &begin, watch };
         let searched = prepared.context().findings(&chosen, None, &from)?;
         let notes = vec![Note::Stretches { length, seconds: length as f64 * step, count }];
         Ok(Looked { searched, faults, notes, single_records: vec![] })

@@ -26,8 +26,6 @@ pub(crate) struct Source<'a> {
     pub used: &'a [Record],
     /// Rows of the first samples of joined records.
     pub firsts: &'a [usize],
-    /// Parameters that the call holds.
-    pub fixed: &'a [String],
     /// Says whether somebody asks to stop.
     pub watch: &'a dyn Watch,
 }

@@ -50,7 +50,7 @@ impl Context<'_, '_> {
         }
         let mut base = from.start.clone();
         base.added = chosen.fitted.model.added[..chosen.fitted.model.known()].to_vec();
-        let models: Vec<Model> = self.informative(&base, from.fixed)?;
+        let models: Vec<Model> = self.informative(&base)?;
         let nuisance = Nuisance::new(self.problem, self.nominal);
         let noise = Stretches::new(self.problem, Part::All);
         let worth = |residual: &[f64], numbers: usize| {
@@ -78,11 +78,11 @@ impl Context<'_, '_> {
     }
 
     /// Models with one held parameter let go, those that explain most of what the base leaves.
-    fn informative(&self, base: &Model, fixed: &[String]) -> Option<Vec<Model>> {
+    fn informative(&self, base: &Model) -> Option<Vec<Model>> {
         let y = self.problem.simulate(base, Grain::Fine)?;
         let left = self.problem.residual(&y, Part::All);
         let mut all: Vec<(f64, Model)> = vec![];
-        for cause in self.held_candidates(base, fixed) {
+        for cause in self.held_candidates(base) {
             let parameters = vec![cause.probe];
             let job = with_candidate(self.problem, base, &cause, &parameters, 1.0, Grain::Fine);
             let span = Part::All.span();
@@ -102,11 +102,11 @@ impl Context<'_, '_> {
     }
 
     /// Another value and a drift of every parameter that is held.
-    fn held_candidates(&self, base: &Model, fixed: &[String]) -> Vec<Arc<Candidate>> {
+    fn held_candidates(&self, base: &Model) -> Vec<Arc<Candidate>> {
         let signals = &self.problem.base.signals;
         let is_held = |p: usize| {
             let parameter = &signals.parameters[p];
-            parameter.fixed || fixed.contains(&parameter.name)
+            parameter.fixed || self.allowed.fixed.contains(&parameter.name)
         };
         let (problem, nominal) = (self.problem, self.nominal);
         let mut builder = Builder::new(problem, nominal, vec![]);

@@ -52,8 +52,8 @@ impl Context<'_, '_> {
         entries
     }
 
-    /// What else is worth knowing of what was found; `fixed` are parameters that were held.
-    pub fn notes(&self, chosen: &Finished, causes: &[Cause], fixed: &[String]) -> Vec<Note> {
+    /// What else is worth knowing of what was found.
+    pub fn notes(&self, chosen: &Finished, causes: &[Cause]) -> Vec<Note> {
         let mut notes = vec![];
         let model = &chosen.fitted.model;
         if !model.added.is_empty() && chosen.dependence > DEPENDS {
@@ -62,7 +62,7 @@ impl Context<'_, '_> {
         if model.added.len() > 1 {
             notes.push(Note::JointLookAlikes);
         }
-        if let Some(parameters) = too_many(self.problem, fixed) {
+        if let Some(parameters) = too_many(self.problem, &self.allowed.fixed) {
             let samples = self.problem.samples(Part::Fit).count();
             notes.push(Note::TooManyParameters { parameters, samples });
         }

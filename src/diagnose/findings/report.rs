@@ -79,7 +79,7 @@ impl Context<'_, '_> {
             _ => Verdict::CausesFound,
         };
         let mut notes = self.of_the_record(&y_before);
-        notes.extend(self.notes(chosen, &causes, from.fixed));
+        notes.extend(self.notes(chosen, &causes));
         notes.extend(levels.into_iter().flatten());
         notes.extend(held);
         notes.extend(made_up_for(chosen.track, &causes, gain.error_removed));
@@ -113,7 +113,7 @@ impl Context<'_, '_> {
             regime,
             closed_loop: self.feedback(chosen, from.used),
             notes,
-            held: self.held(from.fixed),
+            held: self.held(),
             causes,
             series,
             extended,
@@ -158,9 +158,9 @@ impl Context<'_, '_> {
     }
 
     /// Parameters that are supposed right.
-    fn held(&self, fixed: &[String]) -> Vec<String> {
+    fn held(&self) -> Vec<String> {
         let parameters = self.problem.base.signals.parameters.iter();
-        let held = parameters.filter(|p| p.fixed || fixed.contains(&p.name));
+        let held = parameters.filter(|p| p.fixed || self.allowed.fixed.contains(&p.name));
         held.map(|p| p.name.clone()).collect()
     }
 

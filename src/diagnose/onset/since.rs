@@ -13,7 +13,7 @@
 use super::moment::{Moment, moment};
 use super::rise::rise;
 use crate::data::Record;
-use crate::diagnosis::{Diagnosis, without_test};
+use crate::diagnosis::{Diagnosis, searchable};
 use crate::error::DiagnoseError;
 use crate::evaluate::{EvaluateError, Init, Simulation, measured};
 use crate::findings::cause::{Cause, in_the_machine};
@@ -55,10 +55,7 @@ impl Diagnosis<'_> {
         test: Option<&Record>,
         watch: &dyn Watch,
     ) -> Result<Option<Begun>, DiagnoseError> {
-        let seen = match test {
-            Some(_) => record.clone(),
-            None => without_test(std::slice::from_ref(record)).remove(0),
-        };
+        let seen = searchable(std::slice::from_ref(record), test).into_owned().remove(0);
         if seen.segments.len() != 1 || self.max_causes == 0 {
             return Ok(None);
         }

@@ -107,7 +107,7 @@ pub fn all_left(finding: &Finding) -> Vec<String> {
     finding.left.iter().map(one).collect()
 }
 
-/// `A simulation of angle is off by 6.9 times the noise of its sensor: ...`
+/// `A simulation of angle is off by 6.9 times the noise: it knows nothing of what disturbs the plant ..`
 pub(super) fn left_by_disturbance(name: &str, ratio: f64) -> String {
     format!(
         "A simulation of {name} is off by {}: it knows nothing of what disturbs the plant, and says \
