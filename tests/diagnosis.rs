@@ -3,6 +3,7 @@
 //! One binary for all, because linking costs more than compiling.
 
 mod arm;
+mod clocks;
 mod data_faults;
 mod disturbed;
 mod equation_noise;

@@ -11,14 +11,14 @@ use lacuna::system::System;
 const STEP: f64 = 0.02;
 
 /// The pendulum of the README with this damping in its model.
-fn model(damping: f64) -> System {
+pub fn model(damping: f64) -> System {
     let text = crate::exam::plants::PENDULUM.model;
     let text = text.replace("\"c\", value = 0.05", &format!("\"c\", value = {damping:?}"));
     parse(&text, "pendulum.toml", Format::Toml).unwrap()
 }
 
 /// Torque in N m, slow enough for an arm to follow.
-fn torque(n: usize, seed: u64) -> Vec<f64> {
+pub fn torque(n: usize, seed: u64) -> Vec<f64> {
     let white = noise::white(n, 1.0, seed).unwrap();
     let (mut slow, mut u) = (0.0, 0.0);
     let mut next = |e: f64| {
@@ -54,14 +54,14 @@ fn angle(u: &[f64], more: &dyn Fn(f64, f64) -> f64) -> Vec<f64> {
     y
 }
 
-fn record_of(u: &[f64], y: &[f64], seed: u64) -> Record {
+pub fn record_of(u: &[f64], y: &[f64], seed: u64) -> Record {
     let e = noise::white(y.len(), 0.004, 100 + seed).unwrap();
     let y: Vec<f64> = y.iter().zip(e).map(|(y, e)| y + e).collect();
     let record = Record::new(STEP).input("torque [N m]", u.to_vec()).unwrap();
     record.output("angle [rad]", y).unwrap()
 }
 
-fn record(more: &dyn Fn(f64, f64) -> f64, n: usize, seed: u64) -> Record {
+pub fn record(more: &dyn Fn(f64, f64) -> f64, n: usize, seed: u64) -> Record {
     let u = torque(n, seed);
     record_of(&u, &angle(&u, more), seed)
 }

@@ -85,7 +85,7 @@ mod refusal;
 /// Any number that a record may hold, missing ones among them.
 fn value() -> impl Strategy<Value = f64> {
     prop_oneof![
-        8 => any::<f64>().prop_filter("finite", |value| value.is_finite()),
+        8 => any::<f64>().prop_filter("a reading", |value| value.abs() <= 1e100),
         1 => Just(f64::NAN),
         4 => -10.0..10.0,
     ]

@@ -1,8 +1,8 @@
-//! A sine of an angle (cogging) or of time (hum).
+//! A sine of an angle (cogging) or of time (hum), which may be counted from anywhere.
 
 use lacuna::prelude::*;
 
-/// w = a sin(n z) + b cos(n z).
+/// w = a sin(n (z - from)) + b cos(n (z - from)).
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Harmonic {
@@ -12,6 +12,9 @@ pub struct Harmonic {
     pub a: f64,
     /// Unit of the channel.
     pub b: f64,
+    /// Unit of the coordinate.
+    #[serde(default, skip_serializing_if = "super::is_zero")]
+    pub from: f64,
 }
 
 impl Effect for Harmonic {
@@ -20,6 +23,7 @@ impl Effect for Harmonic {
             EffectParameter::coefficient("a", self.a, UnitRule::Channel),
             EffectParameter::coefficient("b", self.b, UnitRule::Channel),
             EffectParameter::shape("n", self.n, UnitRule::PerCoordinate),
+            EffectParameter::origin("from", self.from),
         ])
         .needs(Needs::AngleOrTime)
         .places(Places { channel: true, input: true, output: true, ..Places::default() })
@@ -34,8 +38,8 @@ impl Effect for Harmonic {
 
     #[inline(always)]
     fn law<R: Real>(&self, at: &Arguments<R>, _: &mut [R]) -> R {
-        let &[a, b, n] = at.parameters();
-        let angle = n * at.z();
+        let &[a, b, n, from] = at.parameters();
+        let angle = n * (at.z() - from);
         a * angle.sin() + b * angle.cos()
     }
 
@@ -44,11 +48,13 @@ impl Effect for Harmonic {
         if view.is_time {
             let lowest = 0.6 * std::f64::consts::PI / view.duration;
             let highest = std::f64::consts::PI / view.sampling_time;
-            Search::plain(&card).over(&card, "n", &view.lines, (lowest, highest))
+            // a frequency is told from its phase where time is counted from within the record
+            let lines = Search::plain(&card).over(&card, "n", &view.lines, (lowest, highest));
+            lines.each(&card, "from", &[view.first])
         } else {
             Search::plain(&card).over(&card, "n", &[1.0, 2.0, 3.0, 4.0, 6.0], (0.5, 100.0))
         }
     }
 }
 
-lacuna::register!(CandidateEffect for Harmonic, "harmonic", "a sin(n z) + b cos(n z): cogging, hum");
+lacuna::register!(CandidateEffect for Harmonic, "harmonic", "a sin(n (z - from)) + b cos(n (z - from)): cogging, hum");

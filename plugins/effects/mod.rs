@@ -22,3 +22,9 @@ pub mod polynomial;
 pub mod saturation;
 pub mod stop;
 pub mod stribeck_friction;
+
+/// Whether a number is 0, as an origin that goes without saying is.
+#[allow(clippy::trivially_copy_pass_by_ref)] // serde hands references
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
+}

@@ -48,7 +48,8 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
             finish(&result, &args.out, look)
         }
         ExamVerb::Calibrate(args) => {
-            outputs::check(&[], std::slice::from_ref(&args.out), look)?;
+            let inputs = outputs::files_of(&args.folders);
+            outputs::check(&outputs::paths(&[&inputs]), std::slice::from_ref(&args.out), look)?;
             let result = ExamResult::merge(&args.folders)?;
             calibrate(&result, args.commit.as_deref(), seed, &args.out, look)
         }

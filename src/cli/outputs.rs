@@ -5,6 +5,7 @@
 //! an existing file that lacuna wrote, or is empty  replaced
 //! an existing table (.csv) of other origin         refused, whatever was said: a measured record
 //! any other existing file                          refused without --force
+//! a folder that nothing can be written into        refused before the work, not after it
 //! ```
 //!
 //! Who wrote a file is read off the file: pages name their generator, model files and exported sources
@@ -60,7 +61,36 @@ pub fn check(inputs: &[&Path], outputs: &[PathBuf], look: &Console) -> Result<()
             ));
         }
     }
-    Ok(())
+    outputs.iter().filter(|output| output.as_os_str() != "-").try_for_each(|output| open(output))
+}
+
+/// Refuses an output whose folder is a file, or takes no file.
+fn open(output: &Path) -> Result<(), Failure> {
+    let here = |folder: &Path| {
+        if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.into() }
+    };
+    let mut folders = output.ancestors().skip(1).map(here);
+    let Some(folder) = folders.find(|folder| folder.exists()) else { return Ok(()) };
+    if !folder.is_dir() {
+        let message = format!("{} is a file, and no folder to write into", folder.display());
+        return Err(refused(message, "--out", "give --out the name of a folder".into()));
+    }
+    let probe = folder.join(format!(".lacuna-{}", std::process::id()));
+    let tried = File::create_new(&probe);
+    // what cannot be taken away again was not put there
+    let _ = tried.is_ok() && std::fs::remove_file(&probe).is_ok();
+    tried.map(drop).map_err(|error| cannot_write(output, &error))
+}
+
+/// The files of some folders and of folders in these, as inputs.
+pub fn files_of(folders: &[PathBuf]) -> Vec<PathBuf> {
+    let entries = |folder: &Path| -> Vec<PathBuf> {
+        let found = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        found.map(|entry| entry.path()).collect()
+    };
+    let all = folders.iter().flat_map(|folder| entries(folder));
+    let inner = |path: PathBuf| if path.is_dir() { entries(&path) } else { vec![path] };
+    all.flat_map(inner).collect()
 }
 
 /// Refuses a call that would replace what it reads.

@@ -7,6 +7,7 @@ use super::console::{Console, print};
 use super::failure::Failure;
 use super::outputs::{self, cannot_write};
 use super::stdout;
+use lacuna::fault::Place;
 use lacuna::file::write_text;
 use lacuna::report::Page;
 
@@ -34,10 +35,11 @@ pub fn run(args: &Args, look: &Console) -> Result<u8, Failure> {
     };
     let stored = folder.join(STORED);
     let text = std::fs::read_to_string(&stored).map_err(|error| {
-        Failure::work(format!(
-            "{}: cannot be read ({error}); `lacuna diagnose` writes it beside report.html",
-            stored.display()
-        ))
+        let place = Place { file: Some(stored.display().to_string()), ..Place::default() };
+        let message = format!("{}cannot be read ({error})", place.lead());
+        let hint =
+            "give the folder of a result: `lacuna diagnose` writes this file beside report.html";
+        Failure::input(message, place, hint.into())
     })?;
     let page = Page::from_stored(&text).map_err(|reason| {
         Failure::work(format!(

@@ -10,6 +10,7 @@ use super::diagnosis::{Diagnosis, searchable};
 use super::error::DiagnoseError;
 use super::evidence::Choices;
 use super::findings::hand_over::Searched;
+use super::fit::extended::extended;
 use super::fit::nuisance::Key;
 use super::innovations::{criterion, free_run_criterion};
 use super::prepare::input_dependence::DEPENDS;
@@ -51,7 +52,7 @@ impl Judged {
     /// Log likelihood of a search's answer, and what its numbers and choices take.
     fn answer(&self, of: &Chosen<'_>) -> Result<(f64, f64), DiagnoseError> {
         let Chosen { whole, chosen, .. } = of;
-        let extended = whole.context().extend(&chosen.fitted.model)?;
+        let extended = extended(&whole.problem, &chosen.fitted.model)?;
         let moved = chosen.fitted.keys.iter().filter(|key| !matches!(key, Key::Start(..)));
         let price = self.numbers(moved.count()) + chosen.found.choice;
         Ok((self.log_likelihood(&extended), price))

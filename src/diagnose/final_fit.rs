@@ -13,7 +13,7 @@ use super::fit::problem::{Grain, Model, Problem};
 use super::fit::refit::{Fitted, MANY, Refit, Stop, refit_until};
 use super::prepare::input_dependence::dependence;
 use super::prepare::operating_range::Nominal;
-use super::search::{self, Searched};
+use super::search::{self, BreaksOff, Searched};
 use crate::watch::Watch;
 
 /// What a search is made of.
@@ -24,15 +24,16 @@ pub(crate) struct Tracks<'a, 'b> {
     pub start: &'a Model,
     pub allowed: &'a Allowed,
     pub most: usize,
+    pub breaks_off: BreaksOff<'a>,
     pub watch: &'a dyn Watch,
 }
 
 impl<'a, 'b> Tracks<'a, 'b> {
     /// Searches, and fits what was found to all data.
     pub fn run(mut self) -> Option<Finished> {
-        let (nominal, allowed, most, watch) = (self.nominal, self.allowed, self.most, self.watch);
+        let Self { nominal, start, allowed, most, breaks_off, watch, .. } = self;
         let Searched { found, free, nuisance } =
-            search::search(self.problem, nominal, allowed, most, self.start, watch)?;
+            search::search(self.problem, nominal, allowed, most, start, breaks_off, watch)?;
         let track = if free { Track::ParametersFree } else { Track::ParametersTrusted };
         let chosen = self.finish(track, found, nuisance)?;
         if watch.stopped() {

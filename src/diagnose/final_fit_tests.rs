@@ -60,7 +60,15 @@ fn what_diverges_in_the_end_loses_its_last_cause() {
     let held = Nuisance::new(&prepared.problem, &prepared.nominal);
     let Prepared { problem, nominal, start, .. } = &mut prepared;
     let allowed = &Allowed::default();
-    let mut tracks = Tracks { problem, nominal, start, allowed, most: 2, watch: &() };
+    let mut tracks = Tracks {
+        problem,
+        nominal,
+        start,
+        allowed,
+        most: 2,
+        breaks_off: &|_, _, _| false,
+        watch: &(),
+    };
     let finished = tracks.finish(Track::ParametersTrusted, found, held).unwrap();
     assert_eq!(effects(&finished.fitted.model), ["bias"]);
     assert_eq!(finished.found.slots.len(), 1);

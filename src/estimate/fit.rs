@@ -1,6 +1,7 @@
 //! The fit itself: simulation error, several starts, bounds, intervals.
 
 mod lower;
+mod of_effects;
 mod outcome;
 mod residuals;
 mod starts;
@@ -9,12 +10,12 @@ use serde::Serialize;
 
 use super::rank::Combination;
 use crate::data::Record;
-use crate::effect::Role;
 use crate::evaluate::{EvaluateError, Init, Run};
 use crate::optimise::{Levenberg, Optimiser, Settings, Unknown};
 use crate::statistics::deviation;
 use crate::system::System;
 use crate::watch::Watch;
+use of_effects::of_effects;
 
 /// One estimated parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -159,7 +160,11 @@ impl<'a> Fit<'a> {
         }
         let Some(first) = runs.first() else { return Err(EvaluateError::NothingFree) };
         let signals = &first.plan.signals;
-        let known = || signals.parameters.iter().map(|p| p.name.clone());
+        let numbers = of_effects(system, first);
+        let known = || {
+            let of_effects = numbers.iter().map(|number| number.name.clone());
+            signals.parameters.iter().map(|p| p.name.clone()).chain(of_effects)
+        };
         if let Some(name) = held.iter().find(|&name| known().all(|other| other != *name)) {
             return Err(EvaluateError::NoParameter {
                 name: name.clone(),
@@ -178,29 +183,10 @@ impl<'a> Fit<'a> {
             );
             names.push((parameter.name.clone(), parameter.unit.clone()));
         }
-        for (index, slot) in first.plan.slots.iter().enumerate() {
-            let own_path = matches!(
-                slot.way,
-                crate::system::Way::InputPath(_) | crate::system::Way::OutputPath(_)
-            );
-            for (i, effect_parameter) in slot.card.parameters.iter().enumerate() {
-                let fixed =
-                    slot.card.own_path.iter().any(|(n, _)| own_path && *n == effect_parameter.name);
-                if effect_parameter.role == Role::Choice
-                    || !effect_parameter.value.is_finite()
-                    || fixed
-                {
-                    continue;
-                }
-                let size =
-                    if effect_parameter.value == 0.0 { 1.0 } else { effect_parameter.value.abs() };
-                keys.push(Key::EffectParameter(slot.first_parameter + i));
-                unknowns.push(
-                    Unknown::new(effect_parameter.value, 0.1 * size)
-                        .within(effect_parameter.min, effect_parameter.max),
-                );
-                names.push((format!("effects[{index}].{}", effect_parameter.name), String::new()));
-            }
+        for number in numbers.into_iter().filter(|number| !held.contains(&number.name)) {
+            keys.push(number.key);
+            unknowns.push(number.unknown);
+            names.push((number.name, number.unit));
         }
         if keys.is_empty() {
             return Err(EvaluateError::NothingFree);

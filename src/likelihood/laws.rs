@@ -114,7 +114,7 @@ fn points(
             }
             (0..values.len()).for_each(|i| values[i] = fixed(i).unwrap_or(values[i]));
             let free: Vec<usize> = (0..values.len())
-                .filter(|&i| fixed(i).is_none() && card.parameters[i].role != Role::Choice)
+                .filter(|&i| fixed(i).is_none() && card.parameters[i].role.is_fitted())
                 .filter(|&i| values[i].is_finite())
                 .collect();
             let effect = effect.boxed();

@@ -28,6 +28,14 @@ fn folder(name: &str) -> std::path::PathBuf {
 }
 
 #[test]
+fn what_is_held_is_a_parameter() {
+    let folder = folder("model_held");
+    let text = "sampling_time = 0.1\n[model.duffing]\nmass = 1.0\ndamping = 0.5\nstiffness = 9.0\n\
+                fixed = [\"damping\", @\"mas\"]\n";
+    wrong(&folder, text, "model.duffing.fixed", &["unknown name `mas`", "`mass`"]);
+}
+
+#[test]
 fn no_file_or_no_text() {
     let folder = folder("model_none");
     let at = |file| At { file, line: 0, column: 0, key: "" };

@@ -45,6 +45,10 @@ fn what_a_call_reads_is_never_written_to() {
             refused(&folder, &format!("{line}{force}"), kept);
         }
     }
+    // no folder, but a file
+    std::fs::write(folder.join("plain"), "mine").unwrap();
+    refused(&folder, "diagnose --model m.toml --data d.csv --out plain --force", "plain");
+    refused(&folder, "demo --out plain/below", "plain");
     let own = folder.join("again");
     std::fs::create_dir(&own).unwrap();
     std::fs::copy(folder.join("m.toml"), own.join("extended.toml")).unwrap();

@@ -78,17 +78,16 @@ fn results_that_cannot_be_written() {
     let folder = scratch("unwritable");
     std::fs::write(folder.join("m.toml"), MODEL).unwrap();
     record(&folder, "d.csv", "m.toml", 300, 0.01);
-    for line in [
-        "simulate --model m.toml --data d.csv --out no/such/folder/s.csv",
-        "estimate --model m.toml --data d.csv --out no/such/folder/f.toml",
-        "diagnose --model m.toml --data d.csv --out drive.csv/inside",
-        "demo --out d.csv",
+    for (line, kind, named) in [
+        ("simulate --model m.toml --data d.csv --out no/such/s.csv", "work", "no/such/s.csv"),
+        ("estimate --model m.toml --data d.csv --out no/such/f.toml", "work", "no/such/f.toml"),
+        ("diagnose --model m.toml --data d.csv --out drive.csv/inside", "call", "drive.csv"),
+        ("demo --out d.csv", "call", "d.csv"),
     ] {
-        let ran = run(&folder, &format!("{line} --json")).exits(1);
+        let ran = run(&folder, &format!("{line} --json")).exits(if kind == "work" { 1 } else { 2 });
         let error = ran.json()["error"].clone();
-        assert_eq!(error["kind"], "work", "{line}");
-        let target = line.rsplit(' ').next().unwrap();
-        assert!(error["message"].as_str().unwrap().contains(target), "{line}: {error}");
+        assert_eq!(error["kind"], kind, "{line}");
+        assert!(error["message"].as_str().unwrap().contains(named), "{line}: {error}");
     }
     // what could not be done left what there was
     assert_eq!(std::fs::read_to_string(folder.join("m.toml")).unwrap(), MODEL);

@@ -20,6 +20,6 @@ fn a_lost_page_is_drawn_again_and_a_damaged_store_is_refused() {
     std::fs::write(folder.join("lacuna-out/report-data.json"), "{\"schema\":1}").unwrap();
     let ran = run(&folder, "report").exits(1);
     assert!(ran.err.contains("not the stored form of a report"), "{}", ran.err);
-    let ran = run(&folder, "report nowhere").exits(1);
+    let ran = run(&folder, "report nowhere").exits(2);
     assert!(ran.err.contains("report-data.json: cannot be read"), "{}", ran.err);
 }

@@ -120,8 +120,7 @@ fn duals_of_every_effect_meet_differences() {
             values.extend([z, rate]);
             values.extend((0..own.states).map(|i| 0.3 - 0.7 * i as f64));
             for along in 0..values.len() {
-                if own.parameters.get(along).is_some_and(|k| k.role == lacuna::effect::Role::Choice)
-                {
+                if own.parameters.get(along).is_some_and(|k| !k.role.is_fitted()) {
                     continue;
                 }
                 let exact = effect_slope(effect.as_ref(), &values, along);

@@ -5,7 +5,7 @@
 //! column a channel, and a third axis numbers records. Scalars `Ts`, `dt`, `sampling_time`
 //! (s) and `fs` (Hz) state the step.
 
-use super::error::{DataError, place};
+use super::error::{DataError, is_beyond, place};
 use super::remark::Remark;
 use super::table::{CellFault, CellProblem, Column, Table};
 use std::collections::BTreeMap;
@@ -154,7 +154,7 @@ pub(super) fn column(
     if name == "time" && unit.is_empty() && second != 1.0 {
         values.iter_mut().for_each(|value| *value *= second);
     }
-    let infinite = values.iter().position(|value| value.is_infinite());
+    let infinite = values.iter().position(|value| is_beyond(*value));
     let fault = infinite.map(|row| CellFault {
         line: row + 1,
         found: values[row].to_string(),

@@ -165,8 +165,8 @@ pub enum DataError {
         /// The text found, shortened.
         found: String,
     },
-    /// An infinite value, or one too large for a number of 64 bits.
-    #[error("{}found the infinite value `{found}`", .at.lead())]
+    /// An infinite value, or one so large that squares of it are.
+    #[error("{}found {} `{found}`", .at.lead(), beyond(.found))]
     Infinite {
         /// File, line, column, name.
         at: Box<Place>,
@@ -335,4 +335,20 @@ impl DataError {
 /// A place in a file.
 pub(super) fn place(source: &str, line: Option<usize>, column: Option<usize>) -> Box<Place> {
     Box::new(Place { file: Some(source.to_owned()), line, column, key: None })
+}
+/// Largest magnitude of a value: where a simulation counts as diverged, too, and its square is a number.
+const LARGEST: f64 = 1e100;
+
+/// Whether a value is too large to be computed with.
+pub(super) fn is_beyond(value: f64) -> bool {
+    value.abs() > LARGEST
+}
+
+/// What a value beyond all limits is called.
+fn beyond(found: &str) -> &'static str {
+    let value = found.split_whitespace().next().and_then(|text| text.parse::<f64>().ok());
+    match value.is_some_and(f64::is_finite) {
+        true => "a value beyond 1e100, as a logger writes where it has none,",
+        false => "the infinite value",
+    }
 }

@@ -1,7 +1,7 @@
 //! The columns of a file matched with the inputs and outputs that a model wants.
 
 use super::clock;
-use super::error::DataError;
+use super::error::{DataError, is_beyond};
 use super::record::{Record, Signal};
 use super::remark::Remark;
 use super::step::Step;
@@ -137,7 +137,7 @@ impl Table {
                     to: unit.clone(),
                 });
                 // a value near the largest number may leave the range
-                if let Some(row) = values.iter().position(|value| value.is_infinite()) {
+                if let Some(row) = values.iter().position(|value| is_beyond(*value)) {
                     let line = self.line(row).unwrap_or(self.header_line);
                     let found = column.values[row].to_string();
                     return Err(DataError::Infinite { at: self.place(column, line), found });

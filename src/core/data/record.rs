@@ -1,6 +1,6 @@
 //! A record: inputs and outputs of one machine, sampled at a regular step.
 
-use super::error::DataError;
+use super::error::{DataError, is_beyond};
 use super::table::Table;
 use super::unit;
 use crate::fault::Place;
@@ -158,7 +158,7 @@ impl Record {
         {
             return Err(DataError::Length { at: self.at(&name), found: values.len(), expected });
         }
-        if let Some(k) = values.iter().position(|value| value.is_infinite()) {
+        if let Some(k) = values.iter().position(|value| is_beyond(*value)) {
             let found = format!("{} at sample {k}", values[k]);
             return Err(DataError::Infinite { at: self.at(&name), found });
         }

@@ -1,22 +1,11 @@
 //! What an effect says about itself.
 
 use std::borrow::Cow;
-use std::fmt;
 
 use super::properties::Properties;
+use super::role::Role;
 use super::unit::UnitRule;
 use crate::model::Quantity;
-
-/// What a parameter does to the shape of the effect.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
-    /// The effect is proportional to it: 0 means absent.
-    Coefficient,
-    /// It shapes the curve (a width, a threshold, a frequency).
-    Shape,
-    /// It picks one of a few variants and is never refined (a side).
-    Choice,
-}
 
 /// One parameter of an effect.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +44,13 @@ impl EffectParameter {
     /// A shape parameter, positive.
     pub fn shape(name: impl Into<Cow<'static, str>>, value: f64, unit: UnitRule) -> Self {
         Self { neutral: None, role: Role::Shape, min: 0.0, ..Self::coefficient(name, value, unit) }
+    }
+
+    /// An origin of the coordinate.
+    pub fn origin(name: impl Into<Cow<'static, str>>, value: f64) -> Self {
+        let any = (f64::NEG_INFINITY, f64::INFINITY);
+        let shape = Self::shape(name, value, UnitRule::Coordinate).within(any.0, any.1);
+        Self { role: Role::Origin, ..shape }
     }
 
     /// The same parameter with its allowed range.
@@ -285,15 +281,5 @@ impl Named {
     /// Whether the coordinate is a velocity.
     pub fn is_velocity(&self) -> bool {
         self.quantity.as_ref().is_some_and(Quantity::is_velocity)
-    }
-}
-
-impl fmt::Display for Role {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Coefficient => "coefficient",
-            Self::Shape => "shape",
-            Self::Choice => "choice",
-        })
     }
 }

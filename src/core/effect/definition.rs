@@ -6,7 +6,7 @@ use serde::de::{Deserializer, MapAccess, Visitor};
 use serde::ser::{SerializeMap, Serializer};
 use serde::{Deserialize, Serialize};
 
-use super::card::Role;
+use super::role::Role;
 
 /// Everything that `[effect.<name>]` may hold.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

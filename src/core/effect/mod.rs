@@ -11,6 +11,7 @@ mod definition;
 mod error;
 mod law;
 mod properties;
+mod role;
 mod search;
 mod unit;
 mod view;
@@ -26,11 +27,12 @@ pub use view::View;
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
 pub use self::{
-    card::{Mechanism, Role},
+    card::Mechanism,
     curve::curve,
     definition::{DefinedParameter, DefinedRole, Definition},
     error::{DefinitionError, DefinitionProblem},
     law::{EffectBlock, EffectCall, Shape},
     properties::Properties,
+    role::Role,
     written::WrittenEffect,
 };

@@ -1,6 +1,7 @@
 //! Where the search for an effect starts.
 
-use super::card::{EffectCard, Role};
+use super::card::EffectCard;
+use super::role::Role;
 
 /// Where the search for an effect starts: values for every parameter, coefficients at 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +32,26 @@ impl Search {
             max: card.parameters.iter().map(|parameter| parameter.max).collect(),
             thresholds: false,
         }
+    }
+
+    /// All starts with one parameter at each of some values.
+    ///
+    /// # Panics
+    ///
+    /// If the card has no such parameter.
+    #[must_use]
+    #[track_caller]
+    pub fn each(mut self, card: &EffectCard, parameter: &str, values: &[f64]) -> Self {
+        let index = card.parameters.iter().position(|k| k.name == parameter);
+        let Some(index) = index else { panic!("no parameter called {parameter}") };
+        let at = |start: &Vec<f64>, value: f64| {
+            let mut start = start.clone();
+            start[index] = value;
+            start
+        };
+        let starts = std::mem::take(&mut self.starts);
+        self.starts = values.iter().flat_map(|&v| starts.iter().map(move |s| at(s, v))).collect();
+        self
     }
 
     /// Replaces the starts by a grid over one parameter and narrows its range.

@@ -16,6 +16,8 @@ pub struct View {
     pub lines: Vec<f64>,
     /// Sampling time in s.
     pub sampling_time: f64,
+    /// First value of the coordinate; of time, when the record begins.
+    pub first: f64,
     /// Length of the record in s.
     pub duration: f64,
     /// Whether the coordinate is time itself.
@@ -46,10 +48,16 @@ impl View {
             frequencies: vec![],
             lines: vec![],
             sampling_time,
+            first: values.first().copied().filter(|v| v.is_finite()).unwrap_or(0.0),
             duration: values.len() as f64 * sampling_time,
             is_time: false,
             own_path: false,
         }
+    }
+
+    /// Where a coordinate may be counted from: its 0, and where it begins if that is elsewhere.
+    pub fn origins(&self) -> Vec<f64> {
+        if self.first == 0.0 { vec![0.0] } else { vec![0.0, self.first] }
     }
 
     /// The value below which a share `q` of all values lie.

@@ -5,10 +5,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use serde::ser::{Serialize, SerializeMap, Serializer};
 
-use super::card::{EffectCard, EffectParameter, Named, Places, Role};
+use super::card::{EffectCard, EffectParameter, Named, Places};
 use super::definition::{DefinedParameter, Definition};
 use super::error::{DefinitionError, DefinitionProblem};
 use super::law::{CandidateEffect, EffectBlock, EffectCall, Shape};
+use super::role::Role;
 use super::search::Search;
 use super::unit::UnitRule;
 use super::view::View;

@@ -9,8 +9,8 @@ use super::error::FileError;
 use super::node::{Entry, Node, Value};
 use super::written::{declared, placed, rest};
 use crate::fault::Explain;
-use crate::model::StateSpaceModel;
 use crate::model::equations::{Equations, Table};
+use crate::model::{Signals, StateSpaceModel};
 use crate::system::{AlsoInto, Hold, Integrator, Placed, Sampling, System, SystemError};
 
 /// The keys of a model file.
@@ -46,6 +46,7 @@ pub fn system(document: &Document) -> Result<System, FileError> {
     let system = System { sampling, model, written, effects };
     faults(document, system.model.as_ref())?;
     let signals = system.signals();
+    held(document, system.model.as_ref(), &signals)?;
     let mut placed = system.effects.iter().enumerate();
     let sound = placed.try_for_each(|(index, placed)| placed.check_file(index, &signals));
     match sound.and_then(|()| system.plan(sampling_time.unwrap_or(1.0))) {
@@ -97,6 +98,24 @@ fn faults(document: &Document, model: &dyn StateSpaceModel) -> Result<(), FileEr
     }
     let at = Box::new(document.spot(&format!("{path}.{}", first.key)));
     Err(FileError::Model { at, fault: Box::new(first.clone()), more })
+}
+
+/// What a model holds has to be among its parameters.
+fn held(
+    document: &Document,
+    model: &dyn StateSpaceModel,
+    signals: &Signals,
+) -> Result<(), FileError> {
+    let path = format!("model.{}.fixed", model.typetag_name());
+    let (node, true) = document.root().find(&path) else { return Ok(()) };
+    let Value::List(names) = &node.value else { return Ok(()) };
+    let known: Vec<String> = signals.parameters.iter().map(|p| p.name.clone()).collect();
+    let is_unknown =
+        |node: &&Node| matches!(&node.value, Value::Text(name) if !known.contains(name));
+    let Some(node) = names.iter().find(is_unknown) else { return Ok(()) };
+    let Value::Text(found) = &node.value else { return Ok(()) };
+    let complaint = Complaint::UnknownName { found: found.clone(), known: known.clone() };
+    Err(document.fault(&path, node.span.clone(), complaint))
 }
 
 /// The first thing wrong with equations at the table of a model, or of a model within it,

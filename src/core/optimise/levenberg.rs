@@ -2,18 +2,17 @@
 //!
 //! The method proposes points and takes in their residuals, many at a time, so that the
 //! caller can simulate them side by side: all columns of a Jacobian at once, then a whole
-//! ladder of damping values at once (Levenberg 1944; Marquardt, SIAM J. Appl. Math. 11, 1963).
+//! ladder of damping values at once, the undamped step of Gauss and Newton among them (Levenberg 1944;
+//! Marquardt, SIAM J. Appl. Math. 11, 1963).
 
 use nalgebra::{DMatrix, DVector};
 
+use super::normal::{MANY, dot, hold, products, squares};
 pub use super::unknown::{Settings, Unknown};
 
 /// Damping values tried at once, as powers of this.
 const LADDER: f64 = 6.0;
 const RUNGS: i32 = 7;
-/// Unknowns from which on products of columns are formed as those of matrices, and rows of one.
-const MANY: usize = 100;
-const ROWS: usize = 1024;
 
 #[derive(Debug, Clone, PartialEq)]
 enum Phase {
@@ -180,24 +179,27 @@ impl Levenberg {
         let n = self.unknowns.len();
         let mut points = vec![];
         let mut dampings = vec![];
-        for rung in -1..RUNGS - 1 {
-            let damping = (self.damping * LADDER.powi(rung)).max(1e-12);
-            let mut damped = normal.clone();
+        let rungs = (-1..RUNGS - 1).map(|rung| (self.damping * LADDER.powi(rung)).max(1e-12));
+        // Gauss and Newton's own step moves along a ridge, which any damping would stand still on: only a prior
+        // tells its points apart
+        for damping in rungs.chain([0.0]) {
+            let (mut damped, mut along) = (normal.clone(), gradient.clone());
             let floor = 1e-12 * normal.trace() / n as f64;
             for j in 0..n {
                 damped[(j, j)] += damping * (normal[(j, j)] + floor) + f64::MIN_POSITIVE;
             }
+            if damping == 0.0 {
+                (0..n)
+                    .filter(|&j| self.is_held(j, gradient[j]))
+                    .for_each(|j| hold(&mut damped, &mut along, j));
+            }
             let Some(factor) = damped.cholesky() else { continue };
-            let step = factor.solve(&gradient);
+            let step = factor.solve(&along);
             if step.iter().any(|s| !s.is_finite()) {
                 continue;
             }
             let moved = self.unknowns.iter().zip(&self.point).zip(step.iter());
-            let point = moved.map(|((u, &value), s)| {
-                let to = value + s * u.scale;
-                to.clamp(u.bounds.0, u.bounds.1.max(u.bounds.0))
-            });
-            points.push(point.collect());
+            points.push(moved.map(|((u, &value), s)| u.moved(value, s * u.scale)).collect());
             dampings.push(damping);
         }
         if !points.is_empty() {
@@ -205,12 +207,19 @@ impl Levenberg {
         }
     }
 
+    /// Whether an unknown stands at a bound that its slope pushes against (Bertsekas, SIAM Journal on Control and
+    /// Optimization 20, 1982).
+    fn is_held(&self, j: usize, slope: f64) -> bool {
+        let (bounds, value) = (self.unknowns[j].bounds, self.point[j]);
+        slope < 0.0 && value <= bounds.0 || slope > 0.0 && value >= bounds.1
+    }
+
     /// J'J and -J'r in units of the scales, with the priors' share.
     fn normal_equations(&self) -> (DMatrix<f64>, DVector<f64>) {
         let n = self.unknowns.len();
         let mut normal = DMatrix::zeros(n, n);
         let mut gradient = DVector::zeros(n);
-        let many = (n >= MANY).then(|| self.products());
+        let many = (n >= MANY).then(|| products(&self.columns, self.residuals.len()));
         let product = |i: usize, j: usize| match &many {
             Some(products) => products[(i, j)],
             None => dot(&self.columns[i], &self.columns[j]),
@@ -230,18 +239,6 @@ impl Levenberg {
             }
         }
         (normal, gradient)
-    }
-
-    /// J'J, some rows of J at a time.
-    fn products(&self) -> DMatrix<f64> {
-        let n = self.columns.len();
-        let mut sum = DMatrix::zeros(n, n);
-        for from in (0..self.residuals.len()).step_by(ROWS) {
-            let rows = ROWS.min(self.residuals.len() - from);
-            let part = DMatrix::from_fn(rows, n, |row, column| self.columns[column][from + row]);
-            sum.gemm(1.0, &part.transpose(), &part, 1.0);
-        }
-        sum
     }
 
     /// The priors' share of the cost.
@@ -266,7 +263,10 @@ impl Levenberg {
         match best {
             Some((cost, i, sum)) => {
                 let relative = (before - cost) / before;
-                self.damping = (dampings[i] / LADDER).max(1e-9);
+                // the undamped step is on every ladder: the others stay where they may be needed next
+                if dampings[i] > 0.0 {
+                    self.damping = (dampings[i] / LADDER).max(1e-9);
+                }
                 if let Some(residuals) = answers.into_iter().nth(i).flatten() {
                     self.residuals = residuals;
                 }
@@ -286,14 +286,6 @@ impl Levenberg {
             None => {}
         }
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-fn squares(residuals: &[f64]) -> f64 {
-    dot(residuals, residuals)
 }
 
 #[cfg(test)]

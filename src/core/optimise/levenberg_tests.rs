@@ -1,5 +1,6 @@
 //! Minima that are known.
 
+use super::super::normal::ROWS;
 use super::*;
 
 /// Runs to the end on a function.
@@ -46,6 +47,18 @@ fn a_prior_pulls_as_hard_as_its_deviation_says() {
 }
 
 #[test]
+fn a_prior_decides_along_a_ridge_of_the_data() {
+    // only the product of two unknowns is measured, a thousand times; both are expected to be 1 +- 0.15
+    let start = [0.8, 1.25].map(|v| Unknown::new(v, 0.1).expected(1.0, 0.15).by_factors());
+    let settings = Settings { tolerance: 2e-5, ..Settings::default() };
+    let fit = run(Levenberg::new(start.to_vec(), settings), |p| {
+        let noise = |i: usize| 0.01 * (i as f64 * 2.4).sin();
+        Some((0..1000).map(|i| p[0] * p[1] - 1.0 + noise(i)).collect())
+    });
+    assert!(fit.point.iter().all(|p| (p - 1.0).abs() < 0.01), "{:?}", fit.point);
+}
+
+#[test]
 fn many_unknowns_are_solved_as_few_are() {
     // r_i = sum_j a_ij (p_j - j), more rows than one product of matrices takes
     let (n, rows) = (MANY + 3, ROWS + 100);
@@ -55,7 +68,7 @@ fn many_unknowns_are_solved_as_few_are() {
         let row = |i: usize| (0..n).map(|j| entry(i, j) * (p[j] - j as f64)).sum();
         Some((0..rows).map(row).collect())
     });
-    let products = fit.products();
+    let products = products(&fit.columns, fit.residuals.len());
     let wanted = dot(&fit.columns[5], &fit.columns[9]);
     assert!((products[(5, 9)] - wanted).abs() < 1e-9 * products[(5, 5)]);
     assert!(fit.squares < 1e-6, "{}", fit.squares);

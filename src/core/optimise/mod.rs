@@ -25,6 +25,7 @@ mod lbfgs;
 pub mod levenberg;
 mod marquardt;
 mod named;
+mod normal;
 mod objective;
 mod observe;
 mod schedule;

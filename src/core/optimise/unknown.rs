@@ -11,13 +11,15 @@ pub struct Unknown {
     pub bounds: (f64, f64),
     /// Expected value and standard deviation, weighed against the residuals' own variance.
     pub prior: Option<(f64, f64)>,
+    /// Whether it moves by factors, as long as it is positive.
+    pub by_factors: bool,
 }
 
 impl Unknown {
     /// An unknown without bounds or prior.
     pub fn new(start: f64, scale: f64) -> Self {
         let bounds = (f64::NEG_INFINITY, f64::INFINITY);
-        Self { start, scale, bounds, prior: None }
+        Self { start, scale, bounds, prior: None, by_factors: false }
     }
 
     /// The same within bounds.
@@ -26,6 +28,22 @@ impl Unknown {
         self.bounds = (min, max);
         self.start = self.start.clamp(min, max.max(min));
         self
+    }
+
+    /// The same moving by factors: what data tell of products and ratios alone are then straight ridges.
+    #[must_use]
+    pub fn by_factors(mut self) -> Self {
+        self.by_factors = true;
+        self
+    }
+
+    /// Where a step leads from a value, within the bounds.
+    pub(super) fn moved(&self, value: f64, step: f64) -> f64 {
+        let to = match self.by_factors && value > 0.0 {
+            true => value * (step / value).exp(),
+            false => value + step,
+        };
+        to.clamp(self.bounds.0, self.bounds.1.max(self.bounds.0))
     }
 
     /// The same with an expected value and its standard deviation.

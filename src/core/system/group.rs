@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::model::{Ask, Block, Law};
 
+use super::drift::Drift;
 use super::inputs::InputPaths;
 use super::lane::{Lane, pack};
 use super::outputs::OutputPaths;
@@ -38,7 +39,7 @@ pub struct Group<'a, R> {
     effect_values: Vec<R>,
     gains: Option<Vec<R>>,
     /// Parameter of the model and of the effect, for every drift.
-    drifts: Vec<(usize, usize)>,
+    drifts: Vec<Drift>,
     wirings: Vec<Wiring<R>>,
     /// Own coordinates and outputs, where some effect looks at them.
     coordinates: Vec<R>,
@@ -58,7 +59,7 @@ impl<'a, R: EffectNumber> Group<'a, R> {
             pack::<R>(lanes, packs, slots, |lane, i| lane.gains.get(i).copied().unwrap_or(1.0))
         });
         let drifts = plan.slots.iter().filter_map(|slot| match slot.way {
-            Way::Drift(p) => Some((p, slot.first_parameter)),
+            Way::Drift(p) => Some(Drift::new(p, slot)),
             _ => None,
         });
         let wirings: Vec<_> = (0..slots)
@@ -178,12 +179,12 @@ impl<'a, R: EffectNumber> Group<'a, R> {
     /// Drifting parameters at a given time, among those of all packs.
     pub fn drift(&self, time: f64, theta: &[R], now: &mut [R]) {
         let n = self.plan.sizes.theta;
-        for &(p, parameter) in &self.drifts {
+        for &Drift { p, rate, from } in &self.drifts {
             for pack in 0..self.packs {
+                let values = &self.effect_values[pack * self.plan.effect_parameters..];
+                let since = from.map_or(R::time(time), |from| R::time(time) - values[from]);
                 let at = (self.first + pack) * n + p;
-                now[at] = theta[at]
-                    + self.effect_values[pack * self.plan.effect_parameters + parameter]
-                        * R::time(time);
+                now[at] = theta[at] + values[rate] * since;
             }
         }
     }

@@ -5,6 +5,7 @@
 //! input or an output are passed one after the other, in the order of the model file.
 
 mod arithmetic;
+mod drift;
 mod engine;
 mod error;
 mod exact;
@@ -38,6 +39,7 @@ pub use sampling::{Hold, Integrator, Method, Sampling};
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
 pub use self::{
+    drift::Drift,
     engine::{Jacobian, Transition},
     lane::{Drive, Lane, Route, Track},
     placed::AlsoInto,

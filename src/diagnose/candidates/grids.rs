@@ -52,7 +52,7 @@ impl Grid {
                 .zip(&card.parameters)
                 .map(|(value, parameter)| match parameter.role {
                     _ if value.is_infinite() => i64::MAX,
-                    Role::Choice => value.round() as i64,
+                    Role::Choice | Role::Origin => value.round() as i64,
                     _ => 0,
                 })
                 .collect();

@@ -3,7 +3,7 @@
 use crate::candidates::candidate::{Candidate, Preference, Wire};
 use crate::candidates::library::{Builder, Spot};
 use crate::candidates::stiffness::Stiffness;
-use crate::effect::{CandidateEffect, EffectCard, Mechanism, Named, Needs};
+use crate::effect::{CandidateEffect, EffectCard, EffectParameter, Mechanism, Named, Needs, Role};
 use crate::fit::problem::Model;
 use crate::system::Origin;
 
@@ -21,6 +21,10 @@ impl Builder<'_, '_> {
         let card = self.shared(&card);
         let signals = &self.problem.base.signals;
         let duration = self.problem.len() as f64 * self.problem.base.sampling_time;
+        // a parameter has its own value when the record begins
+        let begins = self.nominal.series(self.time()).first().copied().unwrap_or(0.0);
+        let origin = |own: &EffectParameter| if own.role == Role::Origin { begins } else { 0.0 };
+        let start: Vec<f64> = card.parameters.iter().map(origin).collect();
         for (p, parameter) in signals.parameters.iter().enumerate().filter(|(p, _)| wanted(*p)) {
             let value = model.theta[p];
             let changes = card.mechanism == Mechanism::Parameter;
@@ -30,6 +34,11 @@ impl Builder<'_, '_> {
             let scale = if value == 0.0 { 1.0 } else { value.abs() };
             let free = (f64::NEG_INFINITY, f64::INFINITY);
             let range = if changes { (floor - value, ceiling - value) } else { free };
+            let bound = |first: f64, other: f64| {
+                let mut all = vec![other; start.len()];
+                all[0] = first;
+                all
+            };
             self.found.push(Candidate {
                 effect: name,
                 shape: shape.boxed(),
@@ -46,9 +55,9 @@ impl Builder<'_, '_> {
                 place: Preference::Parameter,
                 linear: vec![0],
                 refine: vec![],
-                starts: vec![vec![0.0]].into(),
-                min: vec![range.0],
-                max: vec![range.1],
+                starts: vec![start.clone()].into(),
+                min: bound(range.0, free.0),
+                max: bound(range.1, free.1),
                 thresholds: false,
                 sign: 0.0,
                 probe: if changes { 0.01 * scale } else { 0.02 * scale / duration },

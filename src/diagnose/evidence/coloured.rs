@@ -4,6 +4,7 @@
 //! W r = w[t] (u[t] - a_1 u[t-1] - ... - a_p u[t-p]) / s, u[t] = r[t] / sqrt(v[t]): `super::noise`,
 //! `super::variance` and `super::tails` have the parts and their sources.
 
+use std::any::Any;
 use std::ops::Range;
 
 use super::noise::Autoregressive;
@@ -101,5 +102,9 @@ impl Whitener for Coloured {
 
     fn remembers(&self) -> bool {
         self.noise.iter().any(|noise| noise.order() > 0)
+    }
+
+    fn as_any(&self) -> &dyn Any {
+        self
     }
 }

@@ -96,6 +96,22 @@ impl NoiseModel for Stretches {
         Estimated { whitener: Arc::new(found), log_likelihood }
     }
 
+    /// The type of noise is chosen by tests, which what two models leave may pass and fail by a hair, and its
+    /// filter is that of normal noise, whatever the tails: each model is compared in the other's noise, too.
+    fn likelier(&self, residual: &[f64], other: &dyn Whitener) -> Estimated {
+        let own = self.estimate(residual);
+        let other = other.as_any().downcast_ref::<Coloured>();
+        let Some(other) = other.filter(|other| other.is_coloured()) else { return own };
+        let mut of = self.filter(other.noise.clone());
+        of.vary(other.variances.clone(), residual);
+        let white = of.whiten(residual);
+        let (of, log_likelihood) = self.with_tails(of, &white, residual);
+        match log_likelihood > own.log_likelihood {
+            true => Estimated { whitener: Arc::new(of), log_likelihood },
+            false => own,
+        }
+    }
+
     fn white(&self, residual: &[f64]) -> Arc<dyn Whitener> {
         let one = |(r, count): (&[f64], f64)| Autoregressive::white(dot(r, r) / count.max(1.0));
         Arc::new(self.filter(self.per_output(residual).map(one).collect()))

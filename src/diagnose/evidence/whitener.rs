@@ -9,6 +9,8 @@
 
 use std::sync::Arc;
 
+use std::any::Any;
+
 /// A causal linear filter, with weights of samples, that makes a disturbance white.
 pub(crate) trait Whitener: Send + Sync + std::fmt::Debug {
     /// The filter: a residual or the effect of a cause, outputs one after the other.
@@ -22,6 +24,9 @@ pub(crate) trait Whitener: Send + Sync + std::fmt::Debug {
 
     /// Whether a sample says something of the next.
     fn remembers(&self) -> bool;
+
+    /// Itself, of whatever family.
+    fn as_any(&self) -> &dyn Any;
 }
 
 /// The disturbance that suits a residual best.
@@ -36,6 +41,9 @@ pub(crate) struct Estimated {
 pub(crate) trait NoiseModel: Send + Sync {
     /// The member that suits a residual best.
     fn estimate(&self, residual: &[f64]) -> Estimated;
+
+    /// The same, or another member where that is more probable.
+    fn likelier(&self, residual: &[f64], other: &dyn Whitener) -> Estimated;
 
     /// The white member that suits it best.
     fn white(&self, residual: &[f64]) -> Arc<dyn Whitener>;

@@ -11,6 +11,7 @@ use crate::findings::cause::{
 };
 use crate::findings::context::Context;
 use crate::findings::note::Note;
+use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::found::SET;
 use crate::fit::problem::Added;
@@ -82,7 +83,7 @@ impl Context<'_, '_> {
             .then(|| self.refitted(chosen, &model.without_all(&own)))
             .flatten();
         let without = match bare.as_ref().filter(|_| !only) {
-            Some(bare) => Some(by.test.score(&self.extend(bare)?)?),
+            Some(bare) => Some(by.test.score(&extended(self.problem, bare)?)?),
             None => None,
         };
         let without = without.as_ref().unwrap_or(by.before);

@@ -83,7 +83,8 @@ impl Context<'_, '_> {
         let left = self.problem.residual(&y, Part::All);
         let mut all: Vec<(f64, Model)> = vec![];
         for cause in self.held_candidates(base) {
-            let parameters = vec![cause.probe];
+            let mut parameters = cause.starts[0].clone();
+            parameters[0] = cause.probe;
             let job = with_candidate(self.problem, base, &cause, &parameters, 1.0, Grain::Fine);
             let span = Part::All.span();
             let Some(y) = job.and_then(|job| self.problem.run(&[job], span).swap_remove(0)) else {

@@ -1,7 +1,7 @@
 //! The numbers of a named cause, with their standard errors.
 
 use crate::candidates::candidate::Wire;
-use crate::effect::Size;
+use crate::effect::{EffectParameter, Role, Size};
 use crate::findings::cause::Value;
 use crate::findings::context::Context;
 use crate::fit::finished::Finished;
@@ -42,17 +42,21 @@ impl Context<'_, '_> {
                 unit: cause.units.1.clone(),
             },
         );
-        let values = parameters.filter(|(_, (_, value))| value.is_finite()).map(
-            |(i, (parameter, value))| Value {
+        let is_said = |(parameter, value): &(&EffectParameter, f64)| {
+            value.is_finite() && (parameter.role != Role::Origin || *value != 0.0)
+        };
+        let values =
+            parameters.filter(|(_, both)| is_said(both)).map(|(i, (parameter, value))| Value {
                 name: parameter.name.to_string(),
                 value,
                 std_error: error(i),
                 unit: match cause.wire {
-                    Wire::Drift(_) => per_second(&cause.units.0),
+                    Wire::Drift(_) if parameter.role == Role::Coefficient => {
+                        per_second(&cause.units.0)
+                    }
                     _ => parameter.unit.text(&cause.units.0, &cause.units.1),
                 },
-            },
-        );
+            });
         values.chain(at).collect()
     }
 

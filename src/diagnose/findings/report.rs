@@ -12,14 +12,13 @@ use crate::findings::hand_over::Searched;
 use crate::findings::order::most_first;
 use crate::findings::remarks::made_up_for;
 use crate::findings::series::{Series, TestSeries};
+use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::hypothesis::{Moved, Track};
 use crate::fit::problem::{Grain, Model, Part};
 use crate::fit::refit::Refit;
-use crate::model::with_parameters;
 use crate::prepare::input_dependence::DEPENDS;
 use crate::statistics::{rms, whiteness};
-use crate::system::System;
 use crate::validate::false_discovery::false_discovery;
 use crate::validate::gain::gain;
 use crate::validate::noise_floor::NoiseFloor;
@@ -41,7 +40,7 @@ impl Context<'_, '_> {
         from: &Source<'_>,
     ) -> Result<Searched, DiagnoseError> {
         let (system, test) = (self.system, from.test);
-        let extended = self.extend(&chosen.fitted.model)?;
+        let extended = extended(self.problem, &chosen.fitted.model)?;
         let (before, after) = rayon::join(|| test.score(system), || test.score(&extended));
         let (before, after) = (before?, after?);
         let y_before = self.problem.simulate(from.start, Grain::Fine);
@@ -162,35 +161,6 @@ impl Context<'_, '_> {
         let parameters = self.problem.base.signals.parameters.iter();
         let held = parameters.filter(|p| p.fixed || self.allowed.fixed.contains(&p.name));
         held.map(|p| p.name.clone()).collect()
-    }
-
-    /// The system with a model's parameters and causes.
-    pub fn extend(&self, model: &Model) -> Result<System, DiagnoseError> {
-        let system = self.system;
-        let signals = &self.problem.base.signals;
-        let theta = model.parameters();
-        let mut extended = system.clone();
-        let step = self.problem.step(Grain::Fine);
-        for added in &model.added {
-            // a parameter is no effect: it has no entry of its own
-            let parameters = added.cause.clipped(&added.parameters, step, &theta);
-            extended.effects.extend(added.cause.placed(&parameters));
-        }
-        let changes: Vec<(String, f64)> = signals
-            .parameters
-            .iter()
-            .zip(&theta)
-            .filter(|(p, value)| p.value != **value)
-            .map(|(p, value)| (p.name.clone(), *value))
-            .collect();
-        if !changes.is_empty() {
-            extended.model = with_parameters(system.model.as_ref(), &changes)
-                .map_err(|error| DiagnoseError::Extend { reason: error.to_string() })?;
-        }
-        if extended.sampling.sampling_time.is_none() {
-            extended.sampling.sampling_time = Some(self.joined.sampling_time);
-        }
-        Ok(extended)
     }
 
     /// The same model without one of its causes (or parameter changes), refitted.

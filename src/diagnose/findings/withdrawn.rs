@@ -3,6 +3,7 @@
 use crate::error::DiagnoseError;
 use crate::findings::cause::{Cause, Value, Withdrawn};
 use crate::findings::context::Context;
+use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::problem::Added;
 use crate::validate::test_error::{Scored, TestData};
@@ -18,8 +19,10 @@ impl Context<'_, '_> {
     ) -> Result<Vec<Withdrawn>, DiagnoseError> {
         let one = |added: &Added| {
             let Added { cause, parameters } = added;
-            let with =
-                test.score(&self.extend(&chosen.fitted.model.with(cause, parameters.clone()))?)?;
+            let with = test.score(&extended(
+                self.problem,
+                &chosen.fitted.model.with(cause, parameters.clone()),
+            )?)?;
             Ok(Withdrawn { cause: as_cause(added), test_rmse_ratio: ratio(&with, after) })
         };
         chosen.found.withdrawn.iter().map(one).collect()

@@ -8,6 +8,7 @@ pub(crate) mod collinear;
 pub(crate) mod covariance;
 pub(crate) mod efficient;
 pub(crate) mod explained;
+pub(crate) mod extended;
 pub(crate) mod finished;
 pub(crate) mod fitted;
 pub(crate) mod found;

@@ -6,6 +6,7 @@ use crate::evidence::has_moved;
 use crate::findings::cause::{Cause, LawPart, Site, Value, Wording};
 use crate::findings::causes::Scores;
 use crate::findings::context::Context;
+use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::nuisance::Key;
 use crate::fit::problem::Model;
@@ -27,7 +28,7 @@ impl Context<'_, '_> {
             let back = self.back(chosen, p, moved.from);
             let (share, by_test) = match &back {
                 Some(back) => {
-                    let scored = by.test.score(&self.extend(back)?)?;
+                    let scored = by.test.score(&extended(self.problem, back)?)?;
                     let share = removed(by.before, &scored, by.after, by.floors);
                     (share, on_test(&scored, by.after))
                 }

@@ -39,8 +39,8 @@ pub(crate) fn too_many(problem: &Problem<'_>, fixed: &[String]) -> Option<usize>
 pub(crate) struct Nuisance {
     /// Initial states and their scale.
     pub spread: Vec<f64>,
-    /// Initial states expected.
-    pub initial: Vec<f64>,
+    /// Initial states expected, of each segment: a record begins anywhere, not where a model file does.
+    pub starts: Vec<Vec<f64>>,
     /// Free parameters: index, nominal value; empty where parameters are trusted.
     pub free: Vec<(usize, f64)>,
     pub segments: usize,
@@ -53,7 +53,7 @@ impl Nuisance {
     pub fn new(problem: &Problem<'_>, nominal: &Nominal) -> Self {
         Self {
             spread: nominal.state_spread.clone(),
-            initial: problem.base.signals.initial(),
+            starts: nominal.starts.clone(),
             free: vec![],
             segments: problem.drive.segments.len().min(SEGMENTS),
             held: None,
@@ -77,7 +77,7 @@ impl Nuisance {
     pub fn keys(&self, model: &Model) -> Vec<Key> {
         let mut keys = vec![];
         for segment in 0..self.segments {
-            keys.extend((0..self.initial.len()).map(|i| Key::Start(segment, i)));
+            keys.extend((0..self.spread.len()).map(|i| Key::Start(segment, i)));
         }
         keys.extend(self.free.iter().map(|&(p, _)| Key::Theta(p)));
         for (a, added) in model.added.iter().enumerate() {
@@ -94,9 +94,10 @@ impl Nuisance {
     pub fn unknown(&self, problem: &Problem<'_>, model: &Model, key: Key) -> Unknown {
         let value = get(model, key);
         match key {
-            Key::Start(_, i) => {
-                let spread = self.spread[i];
-                Unknown::new(value, 0.05 * spread).expected(self.initial[i], spread)
+            Key::Start(segment, i) => {
+                let (spread, start) = (self.spread[i], self.starts.get(segment));
+                let expected = start.map_or(value, |start| start[i]);
+                Unknown::new(value, 0.05 * spread).expected(expected, spread)
             }
             Key::Theta(p) => {
                 let nominal = self.free.iter().find(|(q, _)| *q == p).map_or(value, |(_, v)| *v);
@@ -105,7 +106,9 @@ impl Nuisance {
                 let floor =
                     if nominal > 0.0 { parameter.min.max(0.05 * nominal) } else { parameter.min };
                 let unknown = Unknown::new(value, 0.1 * size).within(floor, parameter.max);
-                unknown.expected(nominal, PRIOR * size)
+                let unknown = unknown.expected(nominal, PRIOR * size);
+                // a model's ridges are products and ratios of what it is made of
+                if nominal > 0.0 { unknown.by_factors() } else { unknown }
             }
             Key::EffectParameter(a, i) => {
                 let cause = &model.added[a].cause;

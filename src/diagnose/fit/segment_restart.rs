@@ -33,7 +33,7 @@ pub(crate) fn restarted(
     let mut better = vec![false; fits.len()];
     let mut best: Vec<Model> = fits.iter().map(|fit| fit.model.clone()).collect();
     let mut least: Vec<Vec<f64>> = fits.iter().map(|fit| squares(&fit.residuals)).collect();
-    for state in (0..ROUNDS).flat_map(|_| 0..nuisance.initial.len()) {
+    for state in (0..ROUNDS).flat_map(|_| 0..nuisance.spread.len()) {
         let moved = |model: &Model, by: f64| {
             let mut moved = model.clone();
             for key in (0..nuisance.segments).map(|s| Key::Start(s, state)) {

@@ -7,6 +7,9 @@ use crate::data::Record;
 use crate::fit::problem::{Grain, Model, Problem};
 use crate::system::System;
 
+/// By how much noise inside the plant must be more probable for a search of its own: odds of 150 to
+/// 1 (Kass and Raftery, JASA 90, 1995: very strong).
+pub(super) const CLEARLY: f64 = 5.0;
 /// Log likelihood of a system on a record less the price of the noise's numbers, under the noise that the
 /// record calls for; `None` where it cannot be run.
 pub(crate) fn criterion(system: &System, record: &Record) -> Option<f64> {
@@ -19,6 +22,22 @@ pub(crate) fn free_run_criterion(system: &System, record: &Record) -> Option<f64
     let predictor = Predictor::new(system, std::slice::from_ref(record)).ok()?;
     let fitted = predictor.fit_free_run().ok()?;
     Some(fitted.criterion()).filter(|value| value.is_finite())
+}
+
+/// Innovations of a record, output by output and over their standard deviations, under the noise that
+/// another one calls for; `None` where that has no noise inside the plant, or nothing can be run.
+pub(crate) fn innovations_of(
+    system: &System,
+    record: &Record,
+    noise_of: &Record,
+) -> Option<Vec<Vec<f64>>> {
+    let of = |record: &Record| Predictor::new(system, std::slice::from_ref(record)).ok();
+    let rivals = Rivals::of(&of(noise_of)?);
+    if !rivals.call_for_more(0.0) {
+        return None;
+    }
+    let NoiseModel::Predictor(noise) = rivals.inside?.noise else { return None };
+    Some(of(record)?.innovations(&noise, false).ok()?.standardised)
 }
 
 /// The predictor of the model that is diagnosed, on the samples of a problem.
@@ -45,7 +64,7 @@ pub(super) fn predictor(
 }
 
 /// The same of an extended system, from the same states.
-pub(super) fn extended(of: &Predictor, by: &System, step: f64) -> Option<Predictor> {
+pub(super) fn extended_by(of: &Predictor, by: &System, step: f64) -> Option<Predictor> {
     of.extended_by(by, by.plan(step).ok()?)
 }
 

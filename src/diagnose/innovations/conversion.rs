@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::criteria::LOOK_ALIKE;
-use crate::effect::{Role, curve};
+use crate::effect::curve;
 use crate::error::DiagnoseError;
 use crate::findings::note::{Disturbance, Disturbs};
 use crate::fit::covariance::Precision;
@@ -167,7 +167,7 @@ fn stands_for(cause: &Candidate, placed: &Placed) -> Option<f64> {
     let start = cause.starts.first()?;
     let same =
         cause.card.parameters.iter().zip(&values).zip(start).all(|((parameter, value), start)| {
-            let choice = parameter.role != Role::Choice || (value - start).abs() < 0.5;
+            let choice = parameter.role.is_fitted() || (value - start).abs() < 0.5;
             choice && value.is_finite() == start.is_finite()
         });
     let name = placed.effect.typetag_name();

@@ -3,7 +3,9 @@
 //! ```text
 //! the model forgets nothing within its records, and these are of a closed loop:
 //!     causes <- by the innovations; where noise inside the plant is called for beside them: the answer
-//! answer <- the search by free runs
+//! answer <- the search by free runs; after its first chain:
+//!     noise inside the plant is called for beside the answer, and that foresees all that follows from inputs:
+//!         causes <- by the innovations; where noise inside the plant is called for beside them: the answer
 //! what it leaves is white                     keep it: all noise sits at the sensors
 //! free run with autoregressive noise as likely as a predictor with noise inside: keep it
 //! causes <- by the innovations of the predictor (`likelihood::Predictor::explain`)
@@ -17,7 +19,8 @@ mod compete;
 mod conversion;
 mod missing;
 mod reconsidered;
+mod unforeseen;
 
-pub(crate) use compete::{criterion, free_run_criterion};
+pub(crate) use compete::{criterion, free_run_criterion, innovations_of};
 pub(crate) use missing::completed;
 pub(crate) use reconsidered::{finish, search};

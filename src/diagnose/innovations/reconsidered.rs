@@ -1,27 +1,29 @@
 //! An answer of free runs, reconsidered where the records call for noise inside the plant.
 
+use std::cell::Cell;
+
 use crate::likelihood::{Explanation, NoiseModel, Predictor};
 
-use super::compete::{Rivals, extended, left, predictor, step};
+use super::compete::{CLEARLY, Rivals, extended_by, left, predictor, step};
 use super::conversion::{carried_over, finished};
+use super::unforeseen::{foreseen, leaves_noise_inside, unforeseen};
 use crate::candidates::candidate::Wire;
 use crate::candidates::library::{Allowed, library};
 use crate::criteria::LEAVES;
 use crate::error::DiagnoseError;
 use crate::evidence::Choices;
+use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
-use crate::fit::problem::{Added, Part};
+use crate::fit::problem::{Added, Model, Part, Problem};
 use crate::fit::refit::MANY;
-use crate::prepare::input_dependence::{DEPENDS, dependence};
+use crate::prepare::input_dependence::DEPENDS;
+use crate::prepare::operating_range::Nominal;
 use crate::prepare::prepared::Prepared;
 use crate::statistics::whiteness;
 use crate::watch::Watch;
 
 /// Score of the Ljung-Box test up to which what is left counts as white.
 const WHITE: f64 = 3.0;
-/// By how much noise inside the plant must be more probable for a search of its own: odds of 150 to
-/// 1 (Kass and Raftery, JASA 90, 1995: very strong).
-const CLEARLY: f64 = 5.0;
 /// Share of the mean square that a free run leaves for which an answer has to account by itself.
 const ACCOUNTED: f64 = 0.95;
 
@@ -39,7 +41,26 @@ pub(crate) fn search(
     if let Some(found) = directly(prepared, allowed, most, watch)? {
         return Ok((found, None));
     }
-    let answer = prepared.search(allowed, most, watch)?;
+    let (may_ask, start) = (may_be_asked(prepared, allowed, most), prepared.start.clone());
+    let is_disturbed = Cell::new(false);
+    let breaks_off = |problem: &Problem<'_>, nominal: &Nominal, model: &Model| {
+        let is = may_ask && leaves_noise_inside((problem, nominal, &start), model).unwrap_or(false);
+        is_disturbed.set(is);
+        is
+    };
+    let mut answer = prepared.search_unless(allowed, most, &breaks_off, watch)?;
+    if is_disturbed.get() && !watch.stopped() {
+        let found = by_innovations(prepared, allowed, most, &answer, watch);
+        let is_all = |found: &Finished| {
+            found.causes() > 0 && is_called_for(prepared, allowed, found).unwrap_or(false)
+        };
+        match found.filter(is_all) {
+            Some(better) => return Ok((better, Some(answer))),
+            // what is known is not searched anew by somebody who was asked to stop
+            None if watch.stopped() => {}
+            None => answer = prepared.search(allowed, most, watch)?,
+        }
+    }
     Ok(reconsidered(prepared, allowed, most, answer, watch))
 }
 
@@ -107,14 +128,9 @@ fn predictors(
     answer: &Finished,
 ) -> Option<(Predictor, Predictor)> {
     let base = predictor(&prepared.problem, &answer.fitted.model, allowed).ok()?;
-    let system = prepared.context().extend(&answer.fitted.model).ok()?;
-    let known = extended(&base, &system, step(&prepared.problem))?;
+    let system = extended(&prepared.problem, &answer.fitted.model).ok()?;
+    let known = extended_by(&base, &system, step(&prepared.problem))?;
     Some((base, known))
-}
-
-/// Outputs less the innovations of the same samples; as measured where there are none.
-fn foreseen<'e>(y: &[f64], innovations: impl Iterator<Item = &'e f64>) -> Vec<f64> {
-    y.iter().zip(innovations).map(|(y, e)| if e.is_finite() { y - e } else { *y }).collect()
 }
 
 /// What a search over some samples found, on all of these records.
@@ -196,24 +212,16 @@ fn by_innovations(
     (is_no_worse || !base.forgets().unwrap_or(true)).then_some(answer)
 }
 
-/// Score that the innovations of an explanation follow from inputs before them, which those of the true
-/// model never do, in a closed loop neither (Ljung, "System Identification", 2nd ed., section 16.6).
+/// The score of `unforeseen` of an explanation.
 fn depends(
     prepared: &Prepared<'_>,
     (base, found): (&Predictor, &Explanation),
     answer: &Finished,
 ) -> Option<f64> {
     let problem = &prepared.problem;
-    let system = prepared.context().extend(&answer.fitted.model).ok()?;
-    let with = extended(base, &system, step(problem))?.starting(found.starts.clone());
-    let innovations = with.innovations(&found.noise, true).ok()?.values;
-    // what was not foreseen of the next sample, against all up to this one
-    let next = problem
-        .y
-        .iter()
-        .zip(&innovations)
-        .map(|(y, e)| foreseen(y, e.iter().skip(1).chain(std::iter::once(&f64::NAN))));
-    Some(dependence(problem, &prepared.nominal, &next.collect::<Vec<Vec<f64>>>()))
+    let system = extended(problem, &answer.fitted.model).ok()?;
+    let with = extended_by(base, &system, step(problem))?.starting(found.starts.clone());
+    unforeseen((problem, &prepared.nominal), &with, &found.noise)
 }
 
 /// Parameters moved; along a ridge it is one, whichever.

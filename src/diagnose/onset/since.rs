@@ -19,8 +19,8 @@ use crate::evaluate::{EvaluateError, Init, Simulation, measured};
 use crate::findings::cause::{Cause, in_the_machine};
 use crate::findings::hand_over::Searched;
 use crate::findings::note::Note;
-use crate::innovations::criterion;
-use crate::likelihood::{Predictor, refutes};
+use crate::innovations::{criterion, innovations_of};
+use crate::likelihood::refutes;
 use crate::system::System;
 use crate::watch::Watch;
 
@@ -43,8 +43,8 @@ pub(crate) struct Begun {
 
 impl Diagnosis<'_> {
     /// What is named in the samples of a record from the moment on at which what the model leaves grows;
-    /// `None` where it does not, nothing in the machine is named, or the model integrates. The test record,
-    /// or the part of this one that serves as such, has no part in it.
+    /// `None` where it does not, or nothing in the machine is named. The test record, or the part of this one
+    /// that serves as such, has no part in it.
     ///
     /// # Errors
     ///
@@ -59,13 +59,7 @@ impl Diagnosis<'_> {
         if seen.segments.len() != 1 || self.max_causes == 0 {
             return Ok(None);
         }
-        let Some(mut at) = rise(&left(self.system, &seen)?) else { return Ok(None) };
-        // the free run of a model that integrates drifts: what it leaves has no level
-        let head = seen.slice(0..COMPARED);
-        let predictor = Predictor::new(self.system, std::slice::from_ref(&head));
-        if !predictor.and_then(|own| own.forgets()).unwrap_or(false) {
-            return Ok(None);
-        }
+        let Some(mut at) = first_rise(self.system, &seen)? else { return Ok(None) };
         loop {
             let from = [record.slice(at..record.len())];
             let searched = self.search(&from, test, self.max_causes, watch)?;
@@ -165,6 +159,16 @@ fn numbers(causes: &[Cause]) -> f64 {
         _ => cause.parts.iter().map(|part| part.parameters.len()).sum(),
     };
     in_the_machine(causes).map(of).sum::<usize>() as f64
+}
+
+/// When what a model leaves grows. Where the samples before call for noise inside the plant, a free run
+/// drifts by it and has no level: what counts is then what a predictor with that noise does not foresee
+/// (Willsky and Jones, IEEE Trans. Automatic Control 21, 1976).
+fn first_rise(system: &System, seen: &Record) -> Result<Option<usize>, EvaluateError> {
+    let Some(at) = rise(&left(system, seen)?) else { return Ok(None) };
+    let before = seen.slice(at.saturating_sub(COMPARED)..at);
+    let innovations = innovations_of(system, seen, &before);
+    Ok(innovations.map_or(Some(at), |innovations| rise(&innovations)))
 }
 
 /// What a free run leaves of the measured outputs, not a number where nothing was measured.

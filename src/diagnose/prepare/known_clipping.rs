@@ -28,31 +28,48 @@ fn limits(y: &[f64], known: &[bool]) -> (f64, f64) {
     (upper(&negative).map_or(f64::NEG_INFINITY, |v| -v), upper(&values).unwrap_or(f64::INFINITY))
 }
 
-fn upper(values: &[f64]) -> Option<f64> {
-    let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let next = values.iter().copied().filter(|&v| v < largest).fold(f64::NEG_INFINITY, f64::max);
-    let count = |at: f64| values.iter().filter(|&&v| v == at).count();
-    let all = stretches(values);
-    let at_limit = all.iter().filter(|s| s.value == largest);
-    let longest = at_limit.map(|s| s.to - s.from).max().unwrap_or(0);
-    let often = count(largest);
-    // a series that rests at its largest value most of the time has no limit but a level
-    let rests = 2 * often > values.len();
-    // on a fine scale, no value but a limit is met time and again
-    let fine = count(next) == 1;
-    let turning = stood(&all, largest);
-    (often >= COUNT
-        && (fine || longest >= RUN)
-        && often >= TIMES * count(next)
-        && longest > LONGER * turning
-        && !rests)
-        .then_some(largest)
+/// Readings at the largest value of a series.
+struct Top {
+    value: f64,
+    count: usize,
+    /// Most of them in a row.
+    longest: usize,
+    /// Whether it is read far more often than the value next to it.
+    stands_out: bool,
 }
 
-/// How many equal readings in a row a series has at most where it turns, at values other than one.
-fn stood(all: &[Stretch], but: f64) -> usize {
+impl Top {
+    fn of(values: &[f64]) -> Self {
+        let value = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let below = |&v: &f64| v < value;
+        let next = values.iter().copied().filter(below).fold(f64::NEG_INFINITY, f64::max);
+        let count = |at: f64| values.iter().filter(|&&v| v == at).count();
+        let all = stretches(values).into_iter().filter(|s| s.value == value);
+        let longest = all.map(|s| s.to - s.from).max().unwrap_or(0);
+        let (often, nearest) = (count(value), count(next));
+        // on a fine scale, no value but a limit is met time and again
+        let fine = nearest == 1;
+        let stands_out = often >= COUNT && (fine || longest >= RUN) && often >= TIMES * nearest;
+        Self { value, count: often, longest, stands_out }
+    }
+}
+
+fn upper(values: &[f64]) -> Option<f64> {
+    let top = Top::of(values);
+    let bottom = Top::of(&values.iter().map(|v| -v).collect::<Vec<f64>>());
+    // an instrument may have a limit on either side
+    let mut limits = vec![top.value];
+    limits.extend(bottom.stands_out.then_some(-bottom.value));
+    let turning = stood(&stretches(values), &limits);
+    // a series that rests at its largest value most of the time has no limit but a level
+    let rests = 2 * top.count > values.len();
+    (top.stands_out && top.longest > LONGER * turning && !rests).then_some(top.value)
+}
+
+/// How many equal readings in a row a series has at most where it turns, at values other than these.
+fn stood(all: &[Stretch], but: &[f64]) -> usize {
     let turns = |s: &&[Stretch]| (s[0].value < s[1].value) == (s[2].value < s[1].value);
-    let other = all.windows(3).filter(turns).map(|s| &s[1]).filter(|s| s.value != but);
+    let other = all.windows(3).filter(turns).map(|s| &s[1]).filter(|s| !but.contains(&s.value));
     other.map(|s| s.to - s.from).max().unwrap_or(0)
 }
 
@@ -135,6 +152,8 @@ mod tests {
         let clipped: Vec<f64> = (0..1000).map(|k| wave(k).min(0.9)).collect();
         let known = vec![true; 1000];
         assert_eq!(limits(&clipped, &known), (f64::NEG_INFINITY, 0.9));
+        let both: Vec<f64> = (0..1000).map(|k| wave(k).clamp(-0.8, 0.9)).collect();
+        assert_eq!(limits(&both, &known), (-0.8, 0.9));
         let coarse: Vec<f64> = (0..1000).map(|k| (8.0 * wave(k)).round() / 8.0).collect();
         assert_eq!(limits(&coarse, &known), (f64::NEG_INFINITY, f64::INFINITY));
         // friction holds a machine where it turns, each time a little elsewhere

@@ -20,6 +20,8 @@ pub(crate) const LEAST: usize = 10;
 pub(crate) struct Nominal {
     /// Entries of the source table at every sample.
     pub seen: Vec<Vec<f64>>,
+    /// Where the model begins, segment by segment.
+    pub starts: Vec<Vec<f64>>,
     /// Standard deviation of every state.
     pub state_spread: Vec<f64>,
     /// How fast the outputs move, in s.
@@ -45,13 +47,14 @@ impl Nominal {
     /// Follows a model along the record; `None` if it diverges at once.
     pub fn new(problem: &Problem<'_>, model: &Model) -> Option<Self> {
         let job = problem.job(model, Grain::Fine)?;
-        let track: Track = problem.system.run_seen(&job.plan, &problem.drive, &job.lane);
+        let mut track: Track = problem.system.run_seen(&job.plan, &problem.drive, &job.lane);
         let base = &problem.base;
         let n = base.sizes;
-        let known = track.y[0].iter().take_while(|v| v.is_finite()).count();
+        let known = track.diverged_at.unwrap_or(problem.len());
         if known < LEAST {
             return None;
         }
+        track.y.iter_mut().chain(&mut track.seen).for_each(|series| hold(&mut series[..known]));
         let entry = |origin| base.sources.at(origin);
         let series = |origin| entry(origin).map(|e| &track.seen[e][..known]);
         let states: Vec<&[f64]> = (0..n.x).filter_map(|i| series(Origin::State(i))).collect();
@@ -85,6 +88,7 @@ impl Nominal {
         let first = &y[0];
         let time_scale = deviation(first) / rms(&gradient(first, dt)).max(1e-300);
         Some(Self {
+            starts: model.starts.clone(),
             state_spread: states.iter().map(|s| deviation(s) + 1e-12).collect(),
             frequencies: frequencies(first, dt),
             time_scale: if time_scale.is_finite() && time_scale > 0.0 {
@@ -154,6 +158,15 @@ impl Nominal {
     /// The known part of a source.
     pub fn series(&self, source: usize) -> &[f64] {
         &self.seen[source][..self.count]
+    }
+}
+
+/// Holds the last value where there is none: in rows without inputs, which nothing is simulated in.
+fn hold(series: &mut [f64]) {
+    let mut last = series.iter().copied().find(|v| v.is_finite()).unwrap_or(0.0);
+    for value in series {
+        last = if value.is_finite() { *value } else { last };
+        *value = last;
     }
 }
 

@@ -13,6 +13,7 @@ use crate::fit::problem::{Grain, Model, Problem};
 use crate::memory::Memory;
 use crate::prepare::joined_records::{Joined, join};
 use crate::prepare::operating_range::{LEAST, Nominal};
+use crate::search::BreaksOff;
 use crate::system::System;
 use crate::watch::Watch;
 
@@ -102,8 +103,19 @@ impl<'a> Prepared<'a> {
         most: usize,
         watch: &dyn Watch,
     ) -> Result<Finished, DiagnoseError> {
-        let found = self.tracks(allowed, most, watch).run();
-        found.ok_or_else(|| self.diverges())
+        self.search_unless(allowed, most, &|_, _, _| false, watch)
+    }
+
+    /// The same; what a search has found so far where it breaks off.
+    pub fn search_unless(
+        &mut self,
+        allowed: &Allowed,
+        most: usize,
+        breaks_off: BreaksOff<'_>,
+        watch: &dyn Watch,
+    ) -> Result<Finished, DiagnoseError> {
+        let tracks = Tracks { breaks_off, ..self.tracks(allowed, most, watch) };
+        tracks.run().ok_or_else(|| self.diverges())
     }
 
     /// The baseline leads nowhere.
@@ -141,7 +153,7 @@ impl<'a> Prepared<'a> {
         watch: &'t dyn Watch,
     ) -> Tracks<'t, 'a> {
         let Self { problem, nominal, start, .. } = self;
-        Tracks { problem, nominal, start, allowed, most, watch }
+        Tracks { problem, nominal, start, allowed, most, breaks_off: &|_, _, _| false, watch }
     }
 }
 

@@ -63,7 +63,7 @@ impl Judge<'_, '_> {
     /// The posterior of a model that was fitted in a metric.
     fn judged(&self, fitted: Fitted, by: &dyn Whitener) -> Option<Fit> {
         let residual = by.colour(&fitted.residuals);
-        let estimated = self.disturbance.estimate(&residual);
+        let estimated = self.disturbance.likelier(&residual, by);
         let Fitted { model, keys, columns, residuals } = fitted;
         let widths: Vec<f64> =
             keys.iter().map(|&key| width(self.problem, self.nuisance, &model, key)).collect();

@@ -37,4 +37,4 @@ mod selected;
 mod study;
 mod veto;
 
-pub(crate) use run::{Searched, search};
+pub(crate) use run::{BreaksOff, Searched, search};

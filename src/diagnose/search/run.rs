@@ -1,5 +1,6 @@
 //! The search from end to end: chains with parameters held and free, laws without a name, the veto.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 use super::beam::{Fit, SetKey};
@@ -39,6 +40,10 @@ const POLISHED: f64 = 8.0;
 /// Distance from the best within which fits are compared by the integrator's own steps, and iterations.
 const SETTLED: (f64, usize) = (12.0, 8);
 
+/// Whether a model, and what it leaves, are for another search; asked once a chain has named something and
+/// what is left is coloured.
+pub(crate) type BreaksOff<'a> = &'a dyn Fn(&Problem<'_>, &Nominal, &Model) -> bool;
+
 /// What a search ended with: causes, whether parameters are free, and what moves beside causes.
 pub(crate) struct Searched {
     pub found: Found,
@@ -53,6 +58,7 @@ pub(crate) fn search(
     allowed: &Allowed,
     most: usize,
     start: &Model,
+    breaks_off: BreaksOff<'_>,
     watch: &dyn Watch,
 ) -> Option<Searched> {
     watch.report(0.0, "simulating the baseline");
@@ -72,19 +78,24 @@ pub(crate) fn search(
         watch.report(0.05, "screening candidates");
         chain(&mut study, false, 0..1);
         screen = screened(&study, &first);
-        families(&mut study);
-        let before = study.beam.best().map(Fit::key);
-        nameless(&mut study);
-        let named = |fit: &&Fit| !fit.model.added.iter().any(|added| added.cause.is_drawn());
-        let now = study.beam.best().filter(named).map(Fit::key);
-        if let Some(key) = now.filter(|key| before.as_ref() != Some(key)) {
-            // what a curve is read as was not searched on from
-            searched(&mut study, key.free, 1);
+        if families(&mut study, breaks_off).is_continue() {
+            and_nameless(&mut study);
         }
     }
     watch.report(0.95, "checking what was named");
     study.settle(SETTLED.0, SETTLED.1);
     concluded(study, screen)
+}
+
+/// Laws without a name; and on from what those are read as.
+fn and_nameless(study: &mut Study<'_, '_>) {
+    let before = study.beam.best().map(Fit::key);
+    nameless(study);
+    let named = |fit: &&Fit| !fit.model.added.iter().any(|added| added.cause.is_drawn());
+    let now = study.beam.best().filter(named).map(Fit::key);
+    if let Some(key) = now.filter(|key| before.as_ref() != Some(key)) {
+        searched(study, key.free, 1);
+    }
 }
 
 /// The model without causes, parameters held and free.
@@ -105,11 +116,12 @@ fn is_behind(study: &Study<'_, '_>) -> bool {
 }
 
 /// The chains with parameters held and free, the more probable family first: where parameters are
-/// wrong, laws that stand in for them would be searched in vain.
-fn families(study: &mut Study<'_, '_>) {
+/// wrong, laws that stand in for them would be searched in vain. Breaks where what is left is for another
+/// search.
+fn families(study: &mut Study<'_, '_>, breaks_off: BreaksOff<'_>) -> ControlFlow<()> {
     if study.free.free.is_empty() {
         searched(study, false, 1);
-        return;
+        return asked(study, breaks_off);
     }
     let is_open = is_open(study);
     if is_open {
@@ -118,17 +130,17 @@ fn families(study: &mut Study<'_, '_>) {
     }
     if is_behind(study) {
         free_chain(study, usize::from(is_open));
+        asked(study, breaks_off)?;
         stand_on_best(study, false, "holding parameters");
         // a law that stands beside what was found with parameters free may do without them
         chain(study, false, 0..2);
         let best = |free: bool| study.beam.best_of(free).map(Fit::posterior);
         let near = best(false).zip(best(true)).is_some_and(|(held, free)| held > free - NEAR);
-        if !near && !leaves_more_than_noise(study) {
-            return;
+        if near || leaves_more_than_noise(study) {
+            searched(study, false, 1);
+            toggle(study);
         }
-        searched(study, false, 1);
-        toggle(study);
-        return;
+        return ControlFlow::Continue(());
     }
     if is_open {
         // the library and its columns are those of the other family
@@ -139,15 +151,29 @@ fn families(study: &mut Study<'_, '_>) {
         study.items.clear();
     }
     searched(study, false, 1);
+    asked(study, breaks_off)?;
     toggle(study);
-    let (Some(held), Some(free)) = (study.beam.best_of(false), study.beam.best_of(true)) else {
-        return;
-    };
-    let near = free.posterior() > held.posterior() - NEAR;
-    let many = held.causes() >= SEVERAL;
-    let model = if near { &free.model } else { &held.model };
-    if many || near || study.dependence(model) > DEPENDS {
-        free_chain(study, 0);
+    if let (Some(held), Some(free)) = (study.beam.best_of(false), study.beam.best_of(true)) {
+        let near = free.posterior() > held.posterior() - NEAR;
+        let many = held.causes() >= SEVERAL;
+        let model = if near { &free.model } else { &held.model };
+        if many || near || study.dependence(model) > DEPENDS {
+            free_chain(study, 0);
+        }
+    }
+    ControlFlow::Continue(())
+}
+
+/// Whether to go on after a chain.
+fn asked(study: &Study<'_, '_>, breaks_off: BreaksOff<'_>) -> ControlFlow<()> {
+    if study.watch.stopped() {
+        return ControlFlow::Continue(());
+    }
+    match study.beam.best().filter(|best| best.causes() > 0 && best.noise.is_coloured()) {
+        Some(best) if breaks_off(study.problem, study.nominal, &best.model) => {
+            ControlFlow::Break(())
+        }
+        _ => ControlFlow::Continue(()),
     }
 }
 

@@ -185,7 +185,7 @@ impl<'a, 'b> Study<'a, 'b> {
             let finite = residual.filter(|r| r.iter().all(|v| v.is_finite()));
             match (finite, self.beam.get_mut(key)) {
                 (Some(residual), Some(fit)) => {
-                    let estimated = self.disturbance.estimate(&residual);
+                    let estimated = self.disturbance.likelier(&residual, fit.noise.as_ref());
                     fit.likelihood = estimated.log_likelihood;
                     fit.noise = estimated.whitener;
                     fit.residual = residual;
@@ -200,7 +200,7 @@ impl<'a, 'b> Study<'a, 'b> {
     pub fn settle(&mut self, within: f64, iterations: usize) {
         let models: Vec<Model> = self.beam.within(within).map(|fit| fit.model.clone()).collect();
         if models.len() < 2 {
-            return;
+            return self.nest(iterations);
         }
         if !self.problem.has_own_steps() {
             self.problem.take_own_steps(&models.iter().collect::<Vec<_>>());
@@ -215,9 +215,10 @@ impl<'a, 'b> Study<'a, 'b> {
     }
 
     /// Fits what is left of the best without each of its causes, from where it stands, until that is not
-    /// better: a model that holds another is compared with it from the same hill of the likelihood.
+    /// better: a model that holds another is compared with it from the same hill of the likelihood, and in the
+    /// same noise.
     fn nest(&mut self, iterations: usize) {
-        while let Some(best) = self.beam.best().cloned() {
+        while let Some(best) = self.beam.best().filter(|best| best.causes() > 0).cloned() {
             let less = |i| Wish { model: best.model.without(i), noise: best.noise.clone() };
             let wishes: Vec<Wish> =
                 (best.model.known()..best.model.added.len()).map(less).collect();

@@ -30,8 +30,7 @@ impl Fitted {
 /// Parameters that are fitted: those that are numbers and choose nothing.
 fn open(law: &dyn CandidateEffect) -> impl Iterator<Item = usize> {
     let parameters = law.card().parameters;
-    let is =
-        move |&i: &usize| parameters[i].role != Role::Choice && parameters[i].value.is_finite();
+    let is = move |&i: &usize| parameters[i].role.is_fitted() && parameters[i].value.is_finite();
     (0..law.card().parameters.len()).filter(is)
 }
 

@@ -92,8 +92,11 @@ fn body(cause: &Cause) -> String {
         Site::Parameter => parameter(cause),
         Site::Drift => {
             let rate = headline_value(cause).map_or_else(String::new, signed);
+            let since = cause.parameters.iter().find(|v| v.name == "from");
+            let since =
+                since.map_or_else(String::new, |v| format!(" at {}", with_unit(v.value, &v.unit)));
             let from = wording.nominal.map_or_else(String::new, |v| {
-                format!(" (from {})", with_unit(v, &wording.units.0))
+                format!(" (from {}{since})", with_unit(v, &wording.units.0))
             });
             format!("Parameter {} drifts by {rate}{from}", cause.into)
         }

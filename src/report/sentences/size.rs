@@ -30,6 +30,8 @@ pub(super) fn wave(cause: &Cause, order: &str, sine: &str, cosine: &str) -> Stri
     let (a, b) = (find(sine).map_or(0.0, |v| v.value), find(cosine).map_or(0.0, |v| v.value));
     let phase = b.atan2(a);
     let z = cause.of.as_deref().unwrap_or("z");
+    let origin = find("from").map(|from| format!("({z} - {})", number(from.value, None)));
+    let counted = origin.unwrap_or_else(|| z.into());
     let said = |value: f64, error: Option<f64>| interval(value, error, "");
     let often = if z == "time" {
         let turn = std::f64::consts::TAU;
@@ -45,7 +47,7 @@ pub(super) fn wave(cause: &Cause, order: &str, sine: &str, cosine: &str) -> Stri
     };
     let phase_error = error.filter(|_| size > 0.0).map(|e| HALF * e / size);
     format!(
-        ", amplitude {}, {often}: {} sin({} {z} {} {})",
+        ", amplitude {}, {often}: {} sin({} {counted} {} {})",
         interval(size, error, unit),
         number(size, error.map(|e| HALF * e)),
         number(n.value, n.std_error.map(|e| HALF * e)),

@@ -1,5 +1,6 @@
 //! Lines, fields and numbers of CSV text.
 
+use crate::data::error::is_beyond;
 use crate::data::table::CellProblem;
 use std::borrow::Cow;
 
@@ -78,7 +79,7 @@ pub(super) fn number(field: &str) -> Result<f64, CellProblem> {
         return Ok(f64::NAN);
     }
     match field.parse::<f64>() {
-        Ok(value) if value.is_infinite() => Err(CellProblem::Infinite),
+        Ok(value) if is_beyond(value) => Err(CellProblem::Infinite),
         Ok(value) => Ok(value),
         Err(_) => {
             // 1,5 as well as 1,234.5: a comma has no place in a number

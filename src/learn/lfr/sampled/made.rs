@@ -2,7 +2,7 @@
 
 use crate::effect::{Mechanism, Role};
 use crate::model::{Parameter, Signal, Signals, State, TimeKind};
-use crate::system::{Hold, Origin, Plan, Slot, System, SystemError, Way};
+use crate::system::{Drift, Hold, Origin, Plan, Slot, System, SystemError, Way};
 
 /// Steps of the integrator that a delay may be long: each is a state, and slopes are taken
 /// along all states.
@@ -26,7 +26,7 @@ pub(super) struct Made {
     /// Parameters of the model that an effect replaces, with its number.
     pub replaced: Vec<(usize, usize)>,
     /// Parameters that drift, with the number that says how fast.
-    pub drifts: Vec<(usize, usize)>,
+    pub drifts: Vec<Drift>,
     /// What each slot remembers.
     pub kept: Vec<Kept>,
     pub memories: usize,
@@ -97,7 +97,7 @@ impl Made {
         let (channel, coordinate) = (unit(Some(&of.into)), unit(of.of.as_deref()));
         match slot.way {
             Way::Value(p) => self.replaced.push((p, slot.first_parameter)),
-            Way::Drift(p) => self.drifts.push((p, slot.first_parameter)),
+            Way::Drift(p) => self.drifts.push(Drift::new(p, slot)),
             _ => {}
         }
         let mut parameters = vec![];
@@ -106,6 +106,7 @@ impl Made {
             let why = match (slot.card.mechanism, effect_parameter.role) {
                 (Mechanism::Delay, _) => "the length of a delay decides how many states there are",
                 (_, Role::Choice) => "a variant has no slope",
+                (_, Role::Origin) => "an origin is where it was put",
                 _ if !effect_parameter.value.is_finite() => "an absent bound has no slope",
                 _ => "",
             };

@@ -1,0 +1,52 @@
+//! Whether what a predictor does not foresee follows from inputs: the cross-correlation test of a model.
+//!
+//! Innovations of the true model with the true noise follow from nothing that was known before, whatever
+//! disturbs the plant and in a closed loop too; those of a model that lacks something do. Beside a model that
+//! passes there is noise left to explain, and no cause.
+//! Source: Ljung, "System Identification", 2nd ed., 1999, section 16.6.
+
+use super::compete::{CLEARLY, Rivals, extended_by, predictor, step};
+use crate::candidates::library::Allowed;
+use crate::fit::extended::extended;
+use crate::fit::problem::{Model, Problem};
+use crate::likelihood::{Noise, NoiseModel, Predictor};
+use crate::prepare::input_dependence::{DEPENDS, dependence};
+use crate::prepare::operating_range::Nominal;
+
+/// Whether noise inside the plant is clearly more probable beside a model, and what that does not foresee
+/// follows from no input; `None` where it cannot be run.
+pub(super) fn leaves_noise_inside(
+    (problem, nominal, start): (&Problem<'_>, &Nominal, &Model),
+    model: &Model,
+) -> Option<bool> {
+    let base = predictor(problem, start, &Allowed::default()).ok()?;
+    let system = extended(problem, model).ok()?;
+    let with = extended_by(&base, &system, step(problem))?;
+    let rivals = Rivals::of(&with);
+    if !rivals.call_for_more(CLEARLY) {
+        return Some(false);
+    }
+    let NoiseModel::Predictor(noise) = rivals.inside?.noise else { return None };
+    Some(unforeseen((problem, nominal), &with, &noise)? <= DEPENDS)
+}
+
+/// Score that the innovations of a predictor under a noise follow from inputs before them.
+pub(super) fn unforeseen(
+    (problem, nominal): (&Problem<'_>, &Nominal),
+    of: &Predictor,
+    noise: &Noise,
+) -> Option<f64> {
+    let innovations = of.innovations(noise, true).ok()?.values;
+    // what was not foreseen of the next sample, against all up to this one
+    let next = problem
+        .y
+        .iter()
+        .zip(&innovations)
+        .map(|(y, e)| foreseen(y, e.iter().skip(1).chain(std::iter::once(&f64::NAN))));
+    Some(dependence(problem, nominal, &next.collect::<Vec<Vec<f64>>>()))
+}
+
+/// Outputs less the innovations of the same samples; as measured where there are none.
+pub(super) fn foreseen<'e>(y: &[f64], innovations: impl Iterator<Item = &'e f64>) -> Vec<f64> {
+    y.iter().zip(innovations).map(|(y, e)| if e.is_finite() { y - e } else { *y }).collect()
+}
