@@ -2,7 +2,7 @@
 
 use lacuna::data::{Random, Record};
 use lacuna::diagnose::{Diagnosis, Note};
-use lacuna::estimate::estimate;
+use lacuna::estimate::{estimate, estimate_with};
 use lacuna::file::{Format, parse};
 
 /// x' = -a x + b c u: of b and c the record shows the product alone.
@@ -71,4 +71,47 @@ fn a_parameter_that_another_makes_up_for_has_no_error_bar() {
     assert!(found.undetermined.is_empty(), "{:?}", found.undetermined);
     let b = &found.parameters[1];
     assert!((b.value - 1.5).abs() < 4.0 * b.std_error.unwrap(), "{b:?}");
+}
+
+/// A cart with dry friction in its model, too wide by far.
+const CART: &str = r#"sampling_time = 0.05
+integrator = { method = "rk4", substeps = 20 }
+[model.equations]
+inputs = [{ name = "u" }]
+states = [{ name = "v", derivative = "u - c*v" }]
+outputs = [{ name = "y", value = "v" }]
+parameters = [{ name = "c", value = 0.5 }]
+channels = [{ name = "force", unit = "N", into = [{ state = "v", gain = "1" }] }]
+coordinates = [{ name = "rate", unit = "m/s", value = "v", quantity = "velocity" }]
+[[effects]]
+into = "force"
+of = "rate"
+effect.coulomb_friction = { level = -0.4, width = 0.05 }
+"#;
+
+/// A width that is narrower than a record tells stays where it is told from none, and leaves the others their errors.
+#[test]
+fn a_width_that_a_record_does_not_tell_spoils_no_other_number() {
+    let mut random = Random::new(8);
+    let (mut u, mut y, mut v, mut force) = (vec![], vec![], 0.0_f64, 0.0);
+    for k in 0..1500 {
+        force = if k % 10 == 0 { 2.0 * random.normal() } else { force };
+        u.push(force);
+        y.push(v + 0.01 * random.normal());
+        for _ in 0..400 {
+            v += 0.05 / 400.0 * (force - 0.6 * v - 0.5 * (v / 1e-4).tanh());
+        }
+    }
+    let record = Record::new(0.05).input("u", u).unwrap().output("y", y).unwrap();
+    let system = parse(CART, "cart.toml", Format::Toml).unwrap();
+    let found = estimate(&system, std::slice::from_ref(&record), 0).unwrap();
+    let [c, level, width] = &found.parameters[..] else { panic!("{:?}", found.parameters) };
+    assert!((c.value - 0.6).abs() < 4.0 * c.std_error.unwrap(), "{c:?}");
+    assert!((level.value + 0.5).abs() < 4.0 * level.std_error.unwrap(), "{level:?}");
+    assert_eq!((level.unit.as_str(), width.unit.as_str()), ("N", "m/s"));
+    assert!(width.value > 1e-3 && width.value < 0.05, "{width:?}");
+    // what an estimate calls a number, it may be asked to hold
+    let held = ["effects[0].width".to_string()];
+    let found = estimate_with(&system, &[record], &held, 0, &()).unwrap();
+    assert!(found.parameters.iter().all(|own| own.name != held[0]), "{:?}", found.parameters);
 }

@@ -170,8 +170,8 @@ fn other_laws_of_the_place_are_there_to_be_drawn() {
     let finding = finding(&system(""));
     let curve = &finding.series.curves[0];
     assert!(!curve.others.is_empty(), "no other law");
-    // what speaks for the law that was named: no other one comes nearer to the free curve, but one that
-    // holds it (Stribeck's of dry friction), and that by no more than chance: chi-square, two numbers
+    // what speaks for the law that was named: no other one comes as near to the free curve, but one that holds
+    // it (Stribeck's of dry friction), which comes nearer by chance: chi-square of its two further numbers
     let off = |law: &[(f64, f64)]| -> f64 {
         let at = |z: f64| law.iter().min_by(|a, b| (a.0 - z).abs().total_cmp(&(b.0 - z).abs()));
         curve.knots.iter().map(|k| ((at(k.0).unwrap().1 - k.1) / k.2).powi(2)).sum()
@@ -180,8 +180,9 @@ fn other_laws_of_the_place_are_there_to_be_drawn() {
     for other in &curve.others {
         assert_eq!(other.law.len(), curve.law.len());
         let unlikely = other.probability < 0.01;
-        let gap = off(&other.law) - named;
-        assert!(!unlikely || gap > -6.0, "{:?}: {gap}", other.effects);
+        let chance = if other.effects == ["stribeck_friction"] { 6.0 } else { 0.0 };
+        let gap = off(&other.law) - named + chance;
+        assert!(!unlikely || gap > 0.0, "{:?}: {gap}", other.effects);
     }
     // the band is about the law, and as wide as the level's error where the law is its level
     let (level, error) =

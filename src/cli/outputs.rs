@@ -24,6 +24,7 @@ use super::console::Console;
 use super::failure::Failure;
 use lacuna::export::WRITTEN_BY;
 use lacuna::fault::Place;
+use lacuna::file::try_write;
 
 /// Bytes at a file's beginning in which it says who wrote it.
 const HEAD: u64 = 4096;
@@ -64,22 +65,20 @@ pub fn check(inputs: &[&Path], outputs: &[PathBuf], look: &Console) -> Result<()
     outputs.iter().filter(|output| output.as_os_str() != "-").try_for_each(|output| open(output))
 }
 
-/// Refuses an output whose folder is a file, or takes no file.
+/// Refuses an output whose folder is a file, or takes no file. A folder that is not there yet is made in the
+/// nearest one that is.
 fn open(output: &Path) -> Result<(), Failure> {
     let here = |folder: &Path| {
         if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.into() }
     };
-    let mut folders = output.ancestors().skip(1).map(here);
-    let Some(folder) = folders.find(|folder| folder.exists()) else { return Ok(()) };
+    let mut folders = output.ancestors().skip(1).map(here).enumerate();
+    let Some((above, folder)) = folders.find(|(_, folder)| folder.exists()) else { return Ok(()) };
     if !folder.is_dir() {
         let message = format!("{} is a file, and no folder to write into", folder.display());
         return Err(refused(message, "--out", "give --out the name of a folder".into()));
     }
-    let probe = folder.join(format!(".lacuna-{}", std::process::id()));
-    let tried = File::create_new(&probe);
-    // what cannot be taken away again was not put there
-    let _ = tried.is_ok() && std::fs::remove_file(&probe).is_ok();
-    tried.map(drop).map_err(|error| cannot_write(output, &error))
+    let tried = if above == 0 { output.to_path_buf() } else { folder.join("new") };
+    try_write(&tried).map_err(|error| cannot_write(output, &error))
 }
 
 /// The files of some folders and of folders in these, as inputs.

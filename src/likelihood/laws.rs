@@ -95,13 +95,7 @@ fn points(
 ) -> Vec<Law> {
     let search = effect.search(view);
     let own_path = matches!(spot, Spot::OwnPath { .. });
-    let fixed = |i: usize| {
-        let name = &card.parameters[i].name;
-        card.own_path
-            .iter()
-            .find(|(parameter, _)| own_path && parameter == name)
-            .map(|(_, value)| *value)
-    };
+    let fixed = |i: usize| card.on_own_path(&card.parameters[i].name).filter(|_| own_path);
     let choices: Vec<usize> =
         (0..card.parameters.len()).filter(|&i| card.parameters[i].role == Role::Choice).collect();
     let mut found = vec![];

@@ -336,7 +336,8 @@ impl DataError {
 pub(super) fn place(source: &str, line: Option<usize>, column: Option<usize>) -> Box<Place> {
     Box::new(Place { file: Some(source.to_owned()), line, column, key: None })
 }
-/// Largest magnitude of a value: where a simulation counts as diverged, too, and its square is a number.
+
+/// Largest magnitude of a value: sums of its square are numbers.
 const LARGEST: f64 = 1e100;
 
 /// Whether a value is too large to be computed with.

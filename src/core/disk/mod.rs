@@ -5,4 +5,4 @@ pub mod regular;
 mod whole;
 
 pub use regular::read_regular;
-pub use whole::{write_hint, write_text, write_whole};
+pub use whole::{try_write, write_hint, write_text, write_whole};

@@ -6,7 +6,7 @@
 //! rename, the folder after it). Whatever fails, the temporary file is removed again.
 
 use std::ffi::OsString;
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -44,21 +44,11 @@ pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let (path, before) = match fs::metadata(path) {
-        Ok(found) if found.is_dir() => return Err(ErrorKind::IsADirectory.into()),
-        Ok(found) if found.is_file() => (fs::canonicalize(path)?, Some(found)),
-        Ok(_) => {
-            let mut to = BufWriter::new(OpenOptions::new().write(true).open(path)?);
-            fill(&mut to)?;
-            return to.flush();
-        }
-        Err(error) if error.kind() == ErrorKind::NotFound => (path.to_path_buf(), None),
-        Err(error) => return Err(error),
+    let Some((path, before)) = replaced(path)? else {
+        let mut to = BufWriter::new(OpenOptions::new().write(true).open(path)?);
+        fill(&mut to)?;
+        return to.flush();
     };
-    // a file that must not be written to is not replaced either
-    if before.as_ref().is_some_and(|found| found.permissions().readonly()) {
-        return Err(ErrorKind::PermissionDenied.into());
-    }
     let (part, file) = temporary_file(&path)?;
     let written = fill_and_flush(file, fill).and_then(|()| {
         if let Some(before) = before {
@@ -73,6 +63,33 @@ pub fn write_whole(
     }
     flush_folder(&path);
     Ok(())
+}
+
+/// Whether a file could be written by [`write_whole`]: nothing is left of the try.
+///
+/// # Errors
+///
+/// What [`write_whole`] would end with.
+pub fn try_write(path: &Path) -> io::Result<()> {
+    let Some((path, _)) = replaced(path)? else { return Ok(()) };
+    let (part, _) = temporary_file(&path)?;
+    fs::remove_file(part)
+}
+
+/// The file that a path stands for, and what it was where there is one; `None` for a pipe or a device, which
+/// is written to as it stands.
+fn replaced(path: &Path) -> io::Result<Option<(PathBuf, Option<Metadata>)>> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => Err(ErrorKind::IsADirectory.into()),
+        // a file that must not be written to is not replaced either
+        Ok(found) if found.is_file() && found.permissions().readonly() => {
+            Err(ErrorKind::PermissionDenied.into())
+        }
+        Ok(found) if found.is_file() => Ok(Some((fs::canonicalize(path)?, Some(found)))),
+        Ok(_) => Ok(None),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Some((path.to_path_buf(), None))),
+        Err(error) => Err(error),
+    }
 }
 
 /// Writes a text as [`write_whole`] does.
@@ -202,6 +219,23 @@ mod tests {
             .unwrap();
         assert_eq!(fs::read_to_string(&there).unwrap(), new);
         fs::remove_dir_all(folder).unwrap();
+    }
+
+    #[test]
+    fn a_try_ends_as_writing_would_and_leaves_nothing() {
+        let folder = folder("try");
+        try_write(&folder.join("new.txt")).unwrap();
+        assert!(names(&folder).is_empty());
+        write_text(&folder.join("old.txt"), "old").unwrap();
+        try_write(&folder.join("old.txt")).unwrap();
+        assert_eq!(names(&folder), ["old.txt"]);
+        assert_eq!(fs::read_to_string(folder.join("old.txt")).unwrap(), "old");
+        assert!(try_write(&folder).is_err() && try_write(&folder.join("no/such.txt")).is_err());
+        if cfg!(unix) {
+            // what is written to as it stands needs no room beside it
+            try_write(Path::new("/dev/null")).unwrap();
+        }
+        fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

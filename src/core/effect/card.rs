@@ -240,6 +240,11 @@ impl EffectCard {
         self
     }
 
+    /// Value at which a parameter stands where the effect acts on its own path, if it is one of these.
+    pub fn on_own_path(&self, parameter: &str) -> Option<f64> {
+        self.own_path.iter().find(|(name, _)| *name == parameter).map(|(_, value)| *value)
+    }
+
     /// Present values of the parameters.
     pub fn values(&self) -> Vec<f64> {
         self.parameters.iter().map(|parameter| parameter.value).collect()

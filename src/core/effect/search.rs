@@ -42,15 +42,10 @@ impl Search {
     #[must_use]
     #[track_caller]
     pub fn each(mut self, card: &EffectCard, parameter: &str, values: &[f64]) -> Self {
-        let index = card.parameters.iter().position(|k| k.name == parameter);
-        let Some(index) = index else { panic!("no parameter called {parameter}") };
-        let at = |start: &Vec<f64>, value: f64| {
-            let mut start = start.clone();
-            start[index] = value;
-            start
-        };
+        let index = index(card, parameter);
         let starts = std::mem::take(&mut self.starts);
-        self.starts = values.iter().flat_map(|&v| starts.iter().map(move |s| at(s, v))).collect();
+        let all = values.iter().flat_map(|&value| starts.iter().map(move |s| (s, value)));
+        self.starts = all.map(|(start, value)| with(start, index, value)).collect();
         self
     }
 
@@ -68,19 +63,26 @@ impl Search {
         grid: &[f64],
         range: (f64, f64),
     ) -> Self {
-        let index = card.parameters.iter().position(|k| k.name == parameter);
-        let Some(index) = index else { panic!("no parameter called {parameter}") };
+        let index = index(card, parameter);
         let first = self.starts.swap_remove(0);
-        self.starts = grid
-            .iter()
-            .map(|&value| {
-                let mut start = first.clone();
-                start[index] = value;
-                start
-            })
-            .collect();
+        self.starts = grid.iter().map(|&value| with(&first, index, value)).collect();
         self.min[index] = self.min[index].max(range.0);
         self.max[index] = self.max[index].min(range.1);
         self
     }
+}
+
+/// Position of a parameter, which a plug-in's own code names.
+#[track_caller]
+fn index(card: &EffectCard, parameter: &str) -> usize {
+    let index = card.parameters.iter().position(|k| k.name == parameter);
+    let Some(index) = index else { panic!("no parameter called {parameter}") };
+    index
+}
+
+/// The same values but for one.
+fn with(start: &[f64], index: usize, value: f64) -> Vec<f64> {
+    let mut start = start.to_vec();
+    start[index] = value;
+    start
 }

@@ -41,7 +41,7 @@ pub use self::{
     write::{save_with, to_toml_with},
 };
 #[doc(hidden)]
-pub use crate::disk::{read_regular, write_hint, write_text, write_whole};
+pub use crate::disk::{read_regular, try_write, write_hint, write_text, write_whole};
 #[doc(hidden)]
 pub use write::to_json;
 

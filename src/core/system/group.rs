@@ -179,12 +179,11 @@ impl<'a, R: EffectNumber> Group<'a, R> {
     /// Drifting parameters at a given time, among those of all packs.
     pub fn drift(&self, time: f64, theta: &[R], now: &mut [R]) {
         let n = self.plan.sizes.theta;
-        for &Drift { p, rate, from } in &self.drifts {
+        for drift in &self.drifts {
             for pack in 0..self.packs {
                 let values = &self.effect_values[pack * self.plan.effect_parameters..];
-                let since = from.map_or(R::time(time), |from| R::time(time) - values[from]);
-                let at = (self.first + pack) * n + p;
-                now[at] = theta[at] + values[rate] * since;
+                let at = (self.first + pack) * n + drift.p;
+                now[at] = drift.value(theta[at], values, R::time(time));
             }
         }
     }

@@ -116,6 +116,12 @@ impl Base {
         self.declared_channels || !self.rates.is_definition(channel)
     }
 
+    /// Unit of a channel, coordinate, input or output.
+    pub fn unit(&self, name: &str) -> Option<&String> {
+        let mut all = self.targets.entries.iter().chain(&self.sources.entries);
+        all.find(|(signal, _)| signal.name == name).map(|(signal, _)| &signal.unit)
+    }
+
     /// Whether an entry of the source table is a velocity: so declared, or, where nothing
     /// is declared, the derivative of another state or coordinate.
     pub fn is_velocity(&self, entry: usize) -> bool {

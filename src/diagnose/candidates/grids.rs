@@ -38,10 +38,7 @@ impl Grid {
         (series, view): (&[f64], &View),
     ) -> Self {
         let search = shape.search(view);
-        let fixed = |parameter: &str| {
-            let own = card.own_path.iter().find(|(name, _)| *name == parameter);
-            own.filter(|_| view.own_path).map(|(_, value)| *value)
-        };
+        let fixed = |parameter: &str| card.on_own_path(parameter).filter(|_| view.own_path);
         let mut patterns: Vec<(Vec<i64>, Vec<Vec<f64>>)> = vec![];
         for mut start in search.starts {
             for (value, parameter) in start.iter_mut().zip(&card.parameters) {

@@ -21,6 +21,7 @@ impl Candidate {
     pub fn wording(&self, nominal: Option<f64>) -> Wording {
         let first =
             self.linear.first().filter(|&&i| self.card.parameters[i].role == Role::Coefficient);
+        let origin = self.card.parameters.iter().find(|own| own.role == Role::Origin);
         Wording {
             title: self.shape.title(&self.named),
             senses: self.shape.senses(&self.named),
@@ -28,6 +29,7 @@ impl Candidate {
             one_sign: self.sign != 0.0,
             size: self.card.properties.size,
             first: first.map(|&i| self.card.parameters[i].name.to_string()),
+            origin: origin.map(|own| own.name.to_string()),
             site: self.site(),
             is_constant: self.card.needs == Needs::Nothing && self.card.mechanism == Mechanism::Law,
             is_friction: self.card.properties.is_friction && !self.named.bare,

@@ -4,14 +4,14 @@
 //! W r = w[t] (u[t] - a_1 u[t-1] - ... - a_p u[t-p]) / s, u[t] = r[t] / sqrt(v[t]): `super::noise`,
 //! `super::variance` and `super::tails` have the parts and their sources.
 
-use std::any::Any;
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::noise::Autoregressive;
 use super::stretches::Stretches;
 use super::tails::Tails;
 use super::variance::VarianceFunction;
-use super::whitener::Whitener;
+use super::whitener::{Estimated, Whitener};
 
 /// Autoregressive noise of every output, of normal or of t innovations and of one variance or one
 /// that follows the signal or time.
@@ -104,7 +104,11 @@ impl Whitener for Coloured {
         self.noise.iter().any(|noise| noise.order() > 0)
     }
 
-    fn as_any(&self) -> &dyn Any {
-        self
+    fn over(&self, stretches: &Stretches, residual: &[f64]) -> Estimated {
+        let mut of = stretches.filter(self.noise.clone());
+        of.vary(self.variances.clone(), residual);
+        let white = of.whiten(residual);
+        let (of, log_likelihood) = stretches.with_tails(of, &white, residual);
+        Estimated { whitener: Arc::new(of), log_likelihood }
     }
 }

@@ -13,7 +13,7 @@ use super::whitener::{Estimated, NoiseModel, Whitener};
 use crate::statistics::dot;
 
 impl Stretches {
-    fn filter(&self, noise: Vec<Autoregressive>) -> Coloured {
+    pub(super) fn filter(&self, noise: Vec<Autoregressive>) -> Coloured {
         Coloured {
             stretches: self.clone(),
             tails: vec![None; noise.len()],
@@ -68,7 +68,12 @@ impl Stretches {
 
     /// A normal disturbance with the tails of what it leaves, `white`, and the logarithm of its
     /// likelihood at the variances that suit it best.
-    fn with_tails(&self, mut of: Coloured, white: &[f64], residual: &[f64]) -> (Coloured, f64) {
+    pub(super) fn with_tails(
+        &self,
+        mut of: Coloured,
+        white: &[f64],
+        residual: &[f64],
+    ) -> (Coloured, f64) {
         let one = |(o, ((w, count), noise)): (usize, ((&[f64], f64), &Autoregressive))| {
             let spent = if of.variances[o].is_some() { count.max(1.0).ln() } else { 0.0 };
             noise.log_likelihood(w, &self.spans, count) - of.log_deviation(o) - spent
@@ -100,16 +105,8 @@ impl NoiseModel for Stretches {
     /// filter is that of normal noise, whatever the tails: each model is compared in the other's noise, too.
     fn likelier(&self, residual: &[f64], other: &dyn Whitener) -> Estimated {
         let own = self.estimate(residual);
-        let other = other.as_any().downcast_ref::<Coloured>();
-        let Some(other) = other.filter(|other| other.is_coloured()) else { return own };
-        let mut of = self.filter(other.noise.clone());
-        of.vary(other.variances.clone(), residual);
-        let white = of.whiten(residual);
-        let (of, log_likelihood) = self.with_tails(of, &white, residual);
-        match log_likelihood > own.log_likelihood {
-            true => Estimated { whitener: Arc::new(of), log_likelihood },
-            false => own,
-        }
+        let other = other.is_coloured().then(|| other.over(self, residual));
+        other.filter(|other| other.log_likelihood > own.log_likelihood).unwrap_or(own)
     }
 
     fn white(&self, residual: &[f64]) -> Arc<dyn Whitener> {

@@ -9,7 +9,7 @@
 
 use std::sync::Arc;
 
-use std::any::Any;
+use super::stretches::Stretches;
 
 /// A causal linear filter, with weights of samples, that makes a disturbance white.
 pub(crate) trait Whitener: Send + Sync + std::fmt::Debug {
@@ -25,8 +25,8 @@ pub(crate) trait Whitener: Send + Sync + std::fmt::Debug {
     /// Whether a sample says something of the next.
     fn remembers(&self) -> bool;
 
-    /// Itself, of whatever family.
-    fn as_any(&self) -> &dyn Any;
+    /// The same filter over what another model leaves of these stretches.
+    fn over(&self, stretches: &Stretches, residual: &[f64]) -> Estimated;
 }
 
 /// The disturbance that suits a residual best.

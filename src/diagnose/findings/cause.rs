@@ -162,6 +162,8 @@ pub struct Wording {
     pub total: Option<Value>,
     /// Name of the first coefficient; none where it has none.
     pub first: Option<String>,
+    /// Name of the value from which it counts its coordinate; none where it has none.
+    pub origin: Option<String>,
     /// What kind of place it enters.
     pub site: Site,
     /// Whether it depends on nothing.

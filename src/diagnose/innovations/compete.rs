@@ -4,6 +4,7 @@ use crate::likelihood::{Fitted, LikelihoodError, NoiseModel, Predictor, Scope};
 
 use crate::candidates::library::Allowed;
 use crate::data::Record;
+use crate::fit::extended::extended;
 use crate::fit::problem::{Grain, Model, Problem};
 use crate::system::System;
 
@@ -63,9 +64,14 @@ pub(super) fn predictor(
     Ok(predictor.within(scope).starting(start.starts.clone()))
 }
 
-/// The same of an extended system, from the same states.
-pub(super) fn extended_by(of: &Predictor, by: &System, step: f64) -> Option<Predictor> {
-    of.extended_by(by, by.plan(step).ok()?)
+/// The same of a model with its parameters and causes, from the same states.
+pub(super) fn extended_by(
+    of: &Predictor,
+    problem: &Problem<'_>,
+    model: &Model,
+) -> Option<Predictor> {
+    let system = extended(problem, model).ok()?;
+    of.extended_by(&system, system.plan(problem.base.sampling_time).ok()?)
 }
 
 /// An answer under both noise models; absent where it cannot be run under one.
@@ -104,11 +110,6 @@ impl Rivals {
 /// Whether the predictor's noise is inside the plant or wanders: without any it is a free run.
 fn has_process(of: &Fitted) -> bool {
     matches!(&of.noise, NoiseModel::Predictor(noise) if noise.has_process())
-}
-
-/// Step of a problem's fine grid in s.
-pub(super) fn step(problem: &Problem<'_>) -> f64 {
-    problem.base.sampling_time
 }
 
 /// The free run of a model over all samples, root mean square in units of the outputs' scales.

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use crate::likelihood::{Explanation, NoiseModel, Predictor};
 
-use super::compete::{CLEARLY, Rivals, extended_by, left, predictor, step};
+use super::compete::{CLEARLY, Rivals, extended_by, left, predictor};
 use super::conversion::{carried_over, finished};
 use super::unforeseen::{foreseen, leaves_noise_inside, unforeseen};
 use crate::candidates::candidate::Wire;
@@ -12,7 +12,6 @@ use crate::candidates::library::{Allowed, library};
 use crate::criteria::LEAVES;
 use crate::error::DiagnoseError;
 use crate::evidence::Choices;
-use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::problem::{Added, Model, Part, Problem};
 use crate::fit::refit::MANY;
@@ -128,8 +127,7 @@ fn predictors(
     answer: &Finished,
 ) -> Option<(Predictor, Predictor)> {
     let base = predictor(&prepared.problem, &answer.fitted.model, allowed).ok()?;
-    let system = extended(&prepared.problem, &answer.fitted.model).ok()?;
-    let known = extended_by(&base, &system, step(&prepared.problem))?;
+    let known = extended_by(&base, &prepared.problem, &answer.fitted.model)?;
     Some((base, known))
 }
 
@@ -219,8 +217,7 @@ fn depends(
     answer: &Finished,
 ) -> Option<f64> {
     let problem = &prepared.problem;
-    let system = extended(problem, &answer.fitted.model).ok()?;
-    let with = extended_by(base, &system, step(problem))?.starting(found.starts.clone());
+    let with = extended_by(base, problem, &answer.fitted.model)?.starting(found.starts.clone());
     unforeseen((problem, &prepared.nominal), &with, &found.noise)
 }
 

@@ -5,9 +5,8 @@
 //! passes there is noise left to explain, and no cause.
 //! Source: Ljung, "System Identification", 2nd ed., 1999, section 16.6.
 
-use super::compete::{CLEARLY, Rivals, extended_by, predictor, step};
+use super::compete::{CLEARLY, Rivals, extended_by, predictor};
 use crate::candidates::library::Allowed;
-use crate::fit::extended::extended;
 use crate::fit::problem::{Model, Problem};
 use crate::likelihood::{Noise, NoiseModel, Predictor};
 use crate::prepare::input_dependence::{DEPENDS, dependence};
@@ -20,8 +19,7 @@ pub(super) fn leaves_noise_inside(
     model: &Model,
 ) -> Option<bool> {
     let base = predictor(problem, start, &Allowed::default()).ok()?;
-    let system = extended(problem, model).ok()?;
-    let with = extended_by(&base, &system, step(problem))?;
+    let with = extended_by(&base, problem, model)?;
     let rivals = Rivals::of(&with);
     if !rivals.call_for_more(CLEARLY) {
         return Some(false);

@@ -25,7 +25,20 @@ const LONGER: usize = 2;
 fn limits(y: &[f64], known: &[bool]) -> (f64, f64) {
     let values: Vec<f64> = y.iter().zip(known).filter(|(_, k)| **k).map(|(y, _)| *y).collect();
     let negative: Vec<f64> = values.iter().map(|v| -v).collect();
-    (upper(&negative).map_or(f64::NEG_INFINITY, |v| -v), upper(&values).unwrap_or(f64::INFINITY))
+    let (top, bottom) = (Top::of(&values), Top::of(&negative));
+    // an instrument may have a limit on either side
+    let sides = [(&top, top.value), (&bottom, -bottom.value)];
+    let out: Vec<f64> =
+        sides.into_iter().filter(|(side, _)| side.stands_out).map(|(_, value)| value).collect();
+    let turning = stood(&stretches(&values), &out);
+    // a series that rests at its largest value most of the time has no limit but a level
+    let is_limit = |side: &Top| {
+        side.stands_out && side.longest > LONGER * turning && 2 * side.count <= values.len()
+    };
+    (
+        if is_limit(&bottom) { -bottom.value } else { f64::NEG_INFINITY },
+        if is_limit(&top) { top.value } else { f64::INFINITY },
+    )
 }
 
 /// Readings at the largest value of a series.
@@ -52,18 +65,6 @@ impl Top {
         let stands_out = often >= COUNT && (fine || longest >= RUN) && often >= TIMES * nearest;
         Self { value, count: often, longest, stands_out }
     }
-}
-
-fn upper(values: &[f64]) -> Option<f64> {
-    let top = Top::of(values);
-    let bottom = Top::of(&values.iter().map(|v| -v).collect::<Vec<f64>>());
-    // an instrument may have a limit on either side
-    let mut limits = vec![top.value];
-    limits.extend(bottom.stands_out.then_some(-bottom.value));
-    let turning = stood(&stretches(values), &limits);
-    // a series that rests at its largest value most of the time has no limit but a level
-    let rests = 2 * top.count > values.len();
-    (top.stands_out && top.longest > LONGER * turning && !rests).then_some(top.value)
 }
 
 /// How many equal readings in a row a series has at most where it turns, at values other than these.

@@ -35,17 +35,14 @@ pub(super) fn of_effects(system: &System, run: &Run<'_>) -> Vec<Number> {
             view.own_path = own_path;
             slot.effect.search(&view)
         });
-        let signals = || plan.targets.entries.iter().chain(&plan.sources.entries);
         let unit_of = |name: &str| {
-            let mut known = signals().map(|(signal, _)| signal).filter(|s| s.name == name);
             let parameter = || plan.signals.parameters.iter().find(|p| p.name == name);
-            let own = known.next().map(|signal| signal.unit.clone());
-            own.or_else(|| Some(parameter()?.unit.clone())).unwrap_or_default()
+            plan.unit(name).or_else(|| Some(&parameter()?.unit)).cloned().unwrap_or_default()
         };
         let units = (unit_of(&placed.into), placed.of.as_deref().map(unit_of).unwrap_or_default());
         for (i, own) in slot.card.parameters.iter().enumerate() {
-            let fixed = slot.card.own_path.iter().any(|(name, _)| own_path && *name == own.name);
-            if !own.role.is_fitted() || !own.value.is_finite() || fixed {
+            let is_fixed = own_path && slot.card.on_own_path(&own.name).is_some();
+            if !own.role.is_fitted() || !own.value.is_finite() || is_fixed {
                 continue;
             }
             let seen = search.as_ref().filter(|_| own.role == Role::Shape);

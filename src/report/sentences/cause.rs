@@ -5,7 +5,7 @@
 //! value plus w. So an offset of -0.08 rad on `angle` reads 0.08 rad too low.
 
 use super::column;
-use super::size::{factor, found_shape, unresolved, wave};
+use super::size::{factor, found_shape, origin, unresolved, wave};
 use super::stated::{HALF, amplitude, headline_value};
 use crate::diagnose::{ActsWhere, Cause, InRecord, LawPart, MostLike, Site, Value, Wording};
 use crate::digits::{interval, number, percent, spaced, with_unit};
@@ -92,9 +92,8 @@ fn body(cause: &Cause) -> String {
         Site::Parameter => parameter(cause),
         Site::Drift => {
             let rate = headline_value(cause).map_or_else(String::new, signed);
-            let since = cause.parameters.iter().find(|v| v.name == "from");
-            let since =
-                since.map_or_else(String::new, |v| format!(" at {}", with_unit(v.value, &v.unit)));
+            let since = origin(cause)
+                .map_or_else(String::new, |v| format!(" at {}", with_unit(v.value, &v.unit)));
             let from = wording.nominal.map_or_else(String::new, |v| {
                 format!(" (from {}{since})", with_unit(v, &wording.units.0))
             });

@@ -2,7 +2,7 @@
 //! from none by no record.
 
 use super::stated::{HALF, amplitude, headline_value};
-use crate::diagnose::{Cause, FoundShape, Site};
+use crate::diagnose::{Cause, FoundShape, Site, Value};
 use crate::digits::{interval, number, percent, rough, spaced};
 use crate::effect::Size;
 
@@ -30,8 +30,8 @@ pub(super) fn wave(cause: &Cause, order: &str, sine: &str, cosine: &str) -> Stri
     let (a, b) = (find(sine).map_or(0.0, |v| v.value), find(cosine).map_or(0.0, |v| v.value));
     let phase = b.atan2(a);
     let z = cause.of.as_deref().unwrap_or("z");
-    let origin = find("from").map(|from| format!("({z} - {})", number(from.value, None)));
-    let counted = origin.unwrap_or_else(|| z.into());
+    let counted = origin(cause)
+        .map_or_else(|| z.into(), |from| format!("({z} - {})", number(from.value, None)));
     let said = |value: f64, error: Option<f64>| interval(value, error, "");
     let often = if z == "time" {
         let turn = std::f64::consts::TAU;
@@ -69,6 +69,12 @@ pub(super) fn factor(cause: &Cause, name: &str) -> String {
         _ => return format!(", factor {text}{unit}"),
     };
     format!(", factor {text}: {what}")
+}
+
+/// Value from which a cause counts its coordinate, where that is not 0.
+pub(super) fn origin(cause: &Cause) -> Option<&Value> {
+    let name = cause.wording.origin.as_ref()?;
+    cause.parameters.iter().find(|v| v.name == *name)
 }
 
 /// A size whose interval holds 0: by itself, or because other numbers of the same place change what it

@@ -86,13 +86,8 @@ impl Made {
     fn parameters(&mut self, number: usize, label: &str, placed: usize, system: &System) {
         let slot = &self.plan.slots[number];
         let of = &system.effects[placed];
-        let unit = |name: Option<&str>| {
-            let known = |name: &&str| {
-                let signals = self.plan.targets.entries.iter().chain(&self.plan.sources.entries);
-                let mut found = signals.map(|(signal, _)| signal).filter(|s| s.name == **name);
-                found.next().map(|signal| signal.unit.clone())
-            };
-            name.as_ref().and_then(known).unwrap_or_default()
+        let unit = |name: Option<&str>| -> String {
+            name.and_then(|name| self.plan.unit(name)).cloned().unwrap_or_default()
         };
         let (channel, coordinate) = (unit(Some(&of.into)), unit(of.of.as_deref()));
         match slot.way {

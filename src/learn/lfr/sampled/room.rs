@@ -2,7 +2,7 @@
 
 use crate::effect::Mechanism;
 use crate::model::{Ask, Block, Law};
-use crate::system::{Drift, EffectNumber, Method, Origin, Slot, Way};
+use crate::system::{EffectNumber, Method, Origin, Slot, Way};
 
 use super::law::split;
 use super::made::Made;
@@ -126,12 +126,11 @@ impl<'a, R: EffectNumber> Room<'a, R> {
             return;
         }
         let (n, time) = (self.made.plan.sizes, self.time + later);
-        for &Drift { p, rate, from } in &self.made.drifts {
+        for drift in &self.made.drifts {
             for pack in 0..self.packs {
                 let values = &self.effect_values[pack * self.made.plan.effect_parameters..];
-                let since = from.map_or(time, |from| time - values[from]);
-                self.now[pack * n.theta + p] =
-                    self.theta[pack * n.theta + p] + values[rate] * since;
+                let at = pack * n.theta + drift.p;
+                self.now[at] = drift.value(self.theta[at], values, time);
             }
         }
         if n.derived > 0 {
