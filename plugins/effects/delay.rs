@@ -19,6 +19,7 @@ impl Effect for Delay {
             .places(Places { input: true, output: true, ..Places::default() })
             .sign(SignRule::Positive)
             .of_an_instrument()
+            .recorded_as("time_shift")
             .rank(2)
     }
 

@@ -7,7 +7,7 @@ use super::input;
 use super::outputs;
 use super::stdout;
 use lacuna::diagnose::Diagnosis;
-use lacuna::digits::number;
+use lacuna::digits::{interval, number, with_unit};
 use lacuna::estimate::{Estimated, estimate_by, estimate_with};
 use lacuna::file::{Document, Format};
 use lacuna::optimise::Named;
@@ -64,14 +64,18 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     Ok(0)
 }
 
+/// A parameter with its 95 % interval, or why it has none.
 fn line(p: &Estimated) -> String {
-    let value = number(p.value, p.std_error);
-    let spread = match p.std_error {
-        Some(error) => format!(" +- {}", number(error, None)),
-        None if p.at_bound => " (at its bound)".into(),
-        None => " (the record does not tell)".into(),
+    let value = match p.std_error {
+        Some(_) => interval(p.value, p.std_error, &p.unit),
+        None => with_unit(p.value, &p.unit),
     };
-    format!("{} = {value}{spread} {} (was {})", p.name, p.unit, number(p.from, None))
+    let why = match p.std_error {
+        Some(_) => "",
+        None if p.at_bound => " (at its bound)",
+        None => " (the record does not tell)",
+    };
+    format!("{} = {value}{why} (was {})", p.name, number(p.from, None))
 }
 
 /// An optimiser by its name, its settings, or a file with these.

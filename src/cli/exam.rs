@@ -9,8 +9,10 @@ use super::outputs::{self, cannot_write};
 use super::study::exam::{configured, finish};
 use super::{input, provenance};
 use lacuna::diagnose::{Diagnosis, Memory, Watch};
+use lacuna::fault::nearest;
 use lacuna::file::{Document, read_regular, save_with, write_text};
-use lacuna::study::{Answer, Answers, Calibration, CaseFile, ExamResult, Written};
+use lacuna::register::registered;
+use lacuna::study::{Answer, Answers, Calibration, CaseFile, ExamResult, Marked, Written};
 
 /// What marking writes.
 const MARKS: [&str; 4] = ["study.json", "cases.csv", "seconds.csv", "report.html"];
@@ -40,10 +42,9 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
         }
         ExamVerb::Mark(args) => {
             outputs::check(&[&args.answers], &outputs::within(&args.out, &MARKS), look)?;
-            let (result, open) = Written::read(&args.folder)?.mark(&args.folder, &args.answers)?;
-            if open > 0 {
-                look.say(&format!("{open} cases have no answer; nothing was found in them."));
-            }
+            let marked = Written::read(&args.folder)?.mark(&args.folder, &args.answers)?;
+            said_of(&marked, look);
+            let result = marked.result;
             result.keep(&args.out)?;
             finish(&result, &args.out, look)
         }
@@ -53,6 +54,25 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
             let result = ExamResult::merge(&args.folders)?;
             calibrate(&result, args.commit.as_deref(), seed, &args.out, look)
         }
+    }
+}
+
+/// Remarks on answers that are missing, or that name what no library has.
+fn said_of(marked: &Marked, look: &Console) {
+    match marked.unanswered {
+        0 => {}
+        1 => look.say("One case has no answer: marked as if nothing had been found."),
+        open => look.say(&format!(
+            "{open} cases have no answer: marked as if nothing had been found there."
+        )),
+    }
+    for (case, effect) in &marked.unknown {
+        let known = registered().into_iter().map(|card| card.name);
+        let hint = nearest(effect, known)
+            .map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"));
+        look.say(&format!(
+            "case {case}: `{effect}`{hint} is no effect of the library: it counts as a wrong name."
+        ));
     }
 }
 

@@ -197,11 +197,21 @@ impl<'a> Report<'a> {
             let Some(after) = finding.after.test.get(name) else { continue };
             let unit =
                 finding.series.outputs.iter().find(|(n, _)| n == name).map_or("", |(_, u)| u);
-            page.element("p", "gain", &format!(
-                "{name}, on data not used before: RMSE {} \u{2192} {} {unit} (fit {:.1} \u{2192} {:.1} %).",
-                number(before.rmse, None), number(after.rmse, None),
-                before.fit_percent, after.fit_percent,
-            ));
+            let fit = match before.fit_percent.is_finite() {
+                true => {
+                    format!("fit {:.1} \u{2192} {:.1} %", before.fit_percent, after.fit_percent)
+                }
+                false => "no fit: what was measured is constant".into(),
+            };
+            page.element(
+                "p",
+                "gain",
+                &format!(
+                    "{name}, on data not used before: RMSE {} \u{2192} {} {unit} ({fit}).",
+                    number(before.rmse, None),
+                    number(after.rmse, None),
+                ),
+            );
         }
         let gain = &finding.gain;
         let [low, high] = sentences::shares(gain.interval95);

@@ -1,8 +1,8 @@
 //! Where a result is from: program, command, files with checksums, seed, date.
 //!
 //! A result of last week can be attributed, and made again, by these alone (FAIR principle R1.2: data
-//! have a detailed provenance; Wilkinson et al., Scientific Data 3, 2016). The date and the wall-clock
-//! time are the only parts that differ from run to run.
+//! have a detailed provenance; Wilkinson et al., Scientific Data 3, 2016). The date stands in the page only,
+//! so that the document of the same call is the same but for the seconds that it took.
 
 use std::io::Read;
 use std::path::Path;
@@ -37,7 +37,7 @@ pub struct Provenance {
     /// Seed of all random numbers.
     pub seed: u64,
     /// When it was made: UTC, to the second, as RFC 3339 writes it. Not part of what is the same from
-    /// run to run, and written apart.
+    /// run to run.
     #[serde(skip)]
     pub date: String,
 }

@@ -74,14 +74,19 @@ pub enum StudyError {
         reason: String,
         /// Where in the file, where that is known.
         at: Box<Place>,
+        /// What to try.
+        hint: &'static str,
     },
 }
+
+/// What to try with results that do not belong together.
+const ONE_STUDY: &str = "merge folders that one configuration and one seed have made";
 
 impl StudyError {
     pub(super) fn merge(path: &std::path::Path, reason: impl ToString) -> Self {
         let (path, reason) = (path.display().to_string(), reason.to_string());
         let at = Place { file: Some(path.clone()), ..Place::default() };
-        Self::Merge { path, reason, at: Box::new(at) }
+        Self::Merge { path, reason, at: Box::new(at), hint: ONE_STUDY }
     }
 
     /// A JSON file that does not hold what it should.
@@ -101,7 +106,15 @@ impl StudyError {
             Some(key) => format!("`{key}`: {error}"),
             None => error.to_string(),
         };
-        Self::Merge { path, reason, at: Box::new(place) }
+        Self::Merge { path, reason, at: Box::new(place), hint: ONE_STUDY }
+    }
+
+    /// The same with another advice, where a file of results is what is wrong.
+    pub(super) fn advising(self, hint: &'static str) -> Self {
+        match self {
+            Self::Merge { path, reason, at, .. } => Self::Merge { path, reason, at, hint },
+            other => other,
+        }
     }
 
     pub(super) fn write(path: &std::path::Path, source: std::io::Error) -> Self {
@@ -143,9 +156,7 @@ impl Explain for StudyError {
             }
             Self::Write { source, .. } => Some(write_hint(source).into()),
             Self::Setting { .. } => Some("change it in the configuration".into()),
-            Self::Merge { .. } => {
-                Some("merge folders that one configuration and one seed have made".into())
-            }
+            Self::Merge { hint, .. } => Some((*hint).into()),
         }
     }
 

@@ -6,7 +6,9 @@
 //! start's encoder is from the states at several noise levels. An [`Exam`] hides effects in
 //! machines and marks what the diagnosis makes of their records.
 
-use lacuna_core::{data, digits, effect, evaluate, fault, file, model, statistics, system, watch};
+use lacuna_core::{
+    data, digits, effect, evaluate, fault, file, model, register, statistics, system, watch,
+};
 use lacuna_diagnose as diagnose;
 use lacuna_learn::{encoder, train};
 use lacuna_report as report;
@@ -35,8 +37,8 @@ pub use rehearse::Rehearsal;
 pub use self::{
     exam::{
         Answer, Answered, Answers, Calibration, Case, CaseFile, CaseTruth, Concealed, Conditions,
-        ExamResult, Hidden, Hit, Kind, Machine, Marks, Named, Noise, Number, Outside, Tally,
-        Written,
+        ExamResult, Hidden, Hit, Kind, Machine, Marked, Marks, Named, Noise, Number, Outside,
+        Tally, Written,
     },
     figures::StudyReport,
     generate::Generated,

@@ -87,7 +87,7 @@ fn diagnose_names_extends_and_can_be_repeated() {
     // the same bytes with another number of threads, time apart
     let again = diagnosed(&folder, "--json --threads 1").exits(0);
     let timeless = |text: &str| -> String {
-        let apart = |line: &&str| ["\"seconds\"", "\"date\""].iter().all(|key| !line.contains(key));
+        let apart = |line: &&str| !line.contains("\"seconds\"");
         text.lines().filter(apart).collect()
     };
     assert_eq!(timeless(&ran.out), timeless(&again.out));

@@ -128,7 +128,7 @@ fn answers() {
     let cases = folder.join("cases/case1/model.toml");
     std::fs::copy(cases, folder.join("extended.toml")).unwrap();
     std::fs::write(&given, ANSWERS).unwrap();
-    assert_eq!(written.mark(&folder, &given).unwrap().1, 0);
+    assert_eq!(written.mark(&folder, &given).unwrap().unanswered, 0);
     fuzz("answers", ANSWERS, |bytes| {
         std::fs::write(&given, bytes).unwrap();
         if Answers::read(&given).is_ok() {

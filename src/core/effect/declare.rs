@@ -53,6 +53,13 @@ impl EffectCard {
         self
     }
 
+    /// The same, a fault of its column under another name; see [`Properties::recorded_as`](super::Properties::recorded_as).
+    #[must_use]
+    pub fn recorded_as(mut self, fault: &'static str) -> Self {
+        self.properties.recorded_as = Some(fault);
+        self
+    }
+
     /// The same, friction; see [`Properties::is_friction`](super::Properties::is_friction).
     #[must_use]
     pub fn friction(mut self) -> Self {

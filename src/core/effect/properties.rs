@@ -50,6 +50,9 @@ pub struct Properties {
     /// One number on the path of a signal, as an instrument may have wrong: of equal explanations it
     /// is preferred to laws at channels.
     pub of_an_instrument: bool,
+    /// The fault of a column that is the same model, where it acts on the path of a signal: it was not the
+    /// machine but its record.
+    pub recorded_as: Option<&'static str>,
     /// It opposes a motion with a size of its own, so that its name says what it depends on.
     pub is_friction: bool,
     /// Its curve is free, or learned: it is found by other means than a law of the library.

@@ -31,7 +31,9 @@ impl Metrics {
             return None;
         }
         let n = samples as f64;
-        let centre = pairs().map(|(y, _)| y).sum::<f64>() / n;
+        // counted from the first, so that a constant is its own mean to the last bit
+        let first = pairs().next().map_or(0.0, |(y, _)| *y);
+        let centre = first + pairs().map(|(y, _)| y - first).sum::<f64>() / n;
         let spread = (pairs().map(|(y, _)| (y - centre).powi(2)).sum::<f64>() / n).sqrt();
         let rmse = (pairs().map(|(y, s)| (y - s).powi(2)).sum::<f64>() / n).sqrt();
         // a constant output has no spread: any error is infinitely many times it
@@ -50,5 +52,11 @@ mod tests {
         let s = [1.5, 2.5, 9.0, 1.5, 2.5];
         let m = Metrics::of(&y, &s).unwrap();
         assert_eq!((m.rmse, m.nrmse, m.fit_percent, m.samples), (0.5, 0.5, 50.0, 4));
+    }
+
+    #[test]
+    fn a_constant_has_no_spread() {
+        let m = Metrics::of(&[0.1; 77], &[0.3; 77]).unwrap();
+        assert!(m.nrmse.is_infinite() && (m.rmse - 0.2).abs() < 1e-12, "{m:?}");
     }
 }

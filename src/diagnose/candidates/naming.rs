@@ -54,6 +54,19 @@ impl Candidate {
         }
     }
 
+    /// The fault of its column that is the same model, where there is one.
+    pub fn fault_of_column(&self, error_removed: f64) -> Option<Alternative> {
+        let fault = self.card.properties.recorded_as.filter(|_| self.wire == Wire::Path)?;
+        Some(Alternative {
+            effect: fault.into(),
+            of: None,
+            unweighed: Some(Unweighed::SameModel),
+            title: title_of(fault),
+            site: Site::Column,
+            ..self.alternative(error_removed)
+        })
+    }
+
     /// It as a part of a cause.
     pub fn as_part(&self, parameters: &[Value]) -> LawPart {
         let wording = self.wording(None);

@@ -271,7 +271,8 @@ fn alternatives(
     let others = weighed(&slot.others, belief.map(|belief| &belief.others));
     let members = members.zip(&slot.set).filter(|(_, (own, _))| !own.same_cause(cause));
     // other laws before twins: where there are too many, twins are missed least
-    let mut alike: Vec<Alternative> = members.map(|(said, _)| said).chain(twins).collect();
+    let mut alike: Vec<Alternative> =
+        members.map(|(said, _)| said).chain(twins).chain(cause.fault_of_column(share)).collect();
     alike.retain(|a: &Alternative| {
         let name = (a.effect.clone(), a.into.clone(), a.of.clone());
         let new = !known.contains(&name);

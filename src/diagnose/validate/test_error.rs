@@ -27,7 +27,8 @@ pub(crate) enum Counted {
 /// A model's errors on the test data.
 #[derive(Default)]
 pub(crate) struct Scored {
-    /// Error series per output, all records one after the other.
+    /// Error series per output, one number a sample, all records one after the other; NaN where it is
+    /// not known or does not count, empty where the output was not measured.
     pub errors: Vec<Vec<f64>>,
     /// What was simulated, sample by sample as the errors.
     pub simulated: Vec<Vec<f64>>,
@@ -51,6 +52,7 @@ impl TestData {
             let track = run.track(starts);
             for (o, y) in run.measured.iter().enumerate() {
                 let Some(y) = y else { continue };
+                errors[o].extend(std::iter::repeat_n(f64::NAN, from.min(y.len())));
                 for k in from..y.len() {
                     errors[o].push(y[k] - track.y[o][k]);
                     measured[o].push(y[k]);

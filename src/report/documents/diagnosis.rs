@@ -1,7 +1,7 @@
 //! The document `diagnosis.json`: a finding, its sentences, and where it is from.
 //!
 //! Keys of a finding are those of its fields; sentences are added here. Two runs with one seed differ
-//! in `seconds` and `date` only, whatever the number of threads, on one kind of processor.
+//! in `seconds` only, whatever the number of threads, on one kind of processor.
 
 use serde::Serialize;
 
@@ -32,7 +32,6 @@ pub struct Document<'a> {
     #[serde(flatten)]
     more: serde_json::Map<String, serde_json::Value>,
     provenance: &'a Provenance,
-    date: &'a str,
 }
 
 /// A cause with its sentence.
@@ -107,9 +106,8 @@ impl<'a> Document<'a> {
     /// Of a finding, the files beside it, and where it is from.
     pub fn of(finding: &'a Finding, files: FileNames<'a>, provenance: &'a Provenance) -> Self {
         let FileNames { extended_model, report } = files;
-        let date = &provenance.date;
         let (schema, finding, more) = (SCHEMA, StatedFinding(finding), serde_json::Map::new());
-        Self { schema, finding, extended_model, report, more, provenance, date }
+        Self { schema, finding, extended_model, report, more, provenance }
     }
 
     /// The same with a further key.

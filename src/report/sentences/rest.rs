@@ -58,25 +58,20 @@ pub fn unweighed(why: Option<Unweighed>) -> &'static str {
     }
 }
 
-/// `angle: test RMSE 0.03100 -> 0.004800 rad (fit 79.0 -> 96.8 %)`; one figure where no model was
+/// `angle: test RMSE 0.03100 -> 0.004800 rad, fit 79.0 -> 96.8 %`; one figure where no model was
 /// extended.
 pub fn rmse(finding: &Finding, name: &str, before: &Metrics, after: &Metrics) -> String {
     let unit = spaced(finding.unit(name));
-    let fit = |m: &Metrics| match m.fit_percent.is_finite() {
-        true => format!("{:.1}", m.fit_percent),
-        false => "none".into(),
+    let each = if finding.causes.is_empty() { vec![before] } else { vec![before, after] };
+    let both = |of: &dyn Fn(&Metrics) -> String| -> String {
+        each.iter().map(|m| of(m)).collect::<Vec<_>>().join(" -> ")
     };
-    if finding.causes.is_empty() {
-        let rmse = number(before.rmse, None);
-        return format!("{name}: test RMSE {rmse}{unit}, fit {} %", fit(before));
-    }
-    format!(
-        "{name}: test RMSE {} -> {}{unit}, fit {} -> {} %",
-        number(before.rmse, None),
-        number(after.rmse, None),
-        fit(before),
-        fit(after)
-    )
+    let rmse = both(&|m| number(m.rmse, None));
+    let fit = match before.fit_percent.is_finite() {
+        true => format!("fit {} %", both(&|m| format!("{:.1}", m.fit_percent))),
+        false => "no fit: what was measured is constant".into(),
+    };
+    format!("{name}: test RMSE {rmse}{unit}, {fit}")
 }
 
 /// An interval of shares in per cent, to digits that tell its lower end from all of it.

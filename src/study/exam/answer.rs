@@ -12,6 +12,9 @@ use crate::file::read_regular;
 
 /// Version of the form.
 pub(super) const SCHEMA: u32 = 1;
+/// What to try with answers that are in another form.
+pub(super) const FORM: &str =
+    "the form of answers stands in docs/exam.md; `lacuna exam answer` writes some";
 
 /// A number of a cause.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -186,6 +189,10 @@ impl Answers {
     ///
     /// If a file cannot be read, holds no answers, or a case is answered twice.
     pub fn read(path: &Path) -> Result<Vec<(Answer, std::path::PathBuf)>, StudyError> {
+        Self::of_files(path).map_err(|error| error.advising(FORM))
+    }
+
+    fn of_files(path: &Path) -> Result<Vec<(Answer, std::path::PathBuf)>, StudyError> {
         let mut files = vec![path.to_path_buf()];
         if path.is_dir() {
             let entries = std::fs::read_dir(path).map_err(|e| StudyError::merge(path, e))?;

@@ -3,17 +3,35 @@
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
 
+use super::answer::FORM;
 use super::folder::{CASES, EXAM, TRUTH, Written, sealed};
 use super::marks::removed;
 use super::{Answer, Answers, CaseTruth, ExamResult, Marks};
 use crate::StudyError;
 use crate::data::{Step, Table, Want};
 use crate::file::{load, read_regular};
+use crate::register::registered;
 
-/// Reads a JSON file.
+/// What to try with an exam that is not whole.
+const AGAIN: &str = "write the exam again with `lacuna exam write`";
+
+/// Reads a JSON file of an exam.
 fn read<T: serde::de::DeserializeOwned>(path: &Path) -> Result<T, StudyError> {
-    let text = read_regular(path).map_err(|error| StudyError::merge(path, error))?;
-    serde_json::from_slice(&text).map_err(|error| StudyError::unread(path, None, &error))
+    let text =
+        read_regular(path).map_err(|error| StudyError::merge(path, error).advising(AGAIN))?;
+    let read = serde_json::from_slice(&text);
+    read.map_err(|error| StudyError::unread(path, None, &error).advising(AGAIN))
+}
+
+/// What marking makes of answers.
+pub struct Marked {
+    /// The marks of every case.
+    pub result: ExamResult,
+    /// Cases without an answer, marked as if nothing had been found.
+    pub unanswered: usize,
+    /// Effects that answers name and that no plug-in registers, with their case: they count as names of
+    /// something that was not hidden.
+    pub unknown: Vec<(usize, String)>,
 }
 
 impl Written {
@@ -27,29 +45,30 @@ impl Written {
     }
 
     /// Marks answers of a tool: a file, or a folder of files. What is not answered is marked as if
-    /// nothing had been found; it is counted.
+    /// nothing had been found.
     ///
     /// # Errors
     ///
     /// If the exam is not whole, its truth is not what was sealed, an answer is to no case, or a
     /// file cannot be read.
-    pub fn mark(&self, folder: &Path, answers: &Path) -> Result<(ExamResult, usize), StudyError> {
+    pub fn mark(&self, folder: &Path, answers: &Path) -> Result<Marked, StudyError> {
         let mut given: BTreeMap<usize, _> = BTreeMap::new();
         for (answer, stored) in Answers::read(answers)? {
             if !(1..=self.cases).contains(&answer.case) {
                 let reason = format!("case {} is none of the {} cases", answer.case, self.cases);
-                return Err(StudyError::merge(answers, reason));
+                return Err(StudyError::merge(answers, reason).advising(FORM));
             }
             given.insert(answer.case, (answer, stored));
         }
         let open = self.cases - given.len();
+        let mut unknown = vec![];
         let mut marks = vec![];
         for seal in &self.seal {
             let key = format!("case{}", seal.case);
             let truth_folder = folder.join(TRUTH).join(&key);
             if sealed(&truth_folder)? != seal.sha256 {
                 let reason = "is not what was sealed when the exam was written";
-                return Err(StudyError::merge(&truth_folder, reason));
+                return Err(StudyError::merge(&truth_folder, reason).advising(AGAIN));
             }
             let truth: CaseTruth = read(&truth_folder.join("truth.json"))?;
             let silent = || Answer {
@@ -71,7 +90,7 @@ impl Written {
                              the answers or below",
                             seal.case
                         );
-                        return Err(StudyError::merge(answers, reason));
+                        return Err(StudyError::merge(answers, reason).advising(FORM));
                     }
                     let extended = load(&stored.join(model))?;
                     let baseline = load(&folder.join(CASES).join(&key).join("model.toml"))?;
@@ -82,9 +101,20 @@ impl Written {
             };
             let answer = answer.map_or_else(silent, |(answer, _)| answer);
             marks.push(Marks::of(&truth, &answer, share));
+            unknown.extend(unregistered(&answer).map(|effect| (seal.case, effect)));
         }
-        Ok((ExamResult::new(marks)?, open))
+        Ok(Marked { result: ExamResult::new(marks)?, unanswered: open, unknown })
     }
+}
+
+/// Effects of an answer that no plug-in registers.
+fn unregistered(answer: &Answer) -> impl Iterator<Item = String> {
+    let known = registered();
+    let parts = answer.causes.iter().flat_map(|cause| &cause.parts).map(|part| &part.effect);
+    let others = answer.causes.iter().flat_map(|cause| &cause.indistinguishable);
+    let named = answer.causes.iter().map(|cause| &cause.effect).chain(parts);
+    let named = named.chain(others.map(|other| &other.effect));
+    named.filter(move |effect| known.iter().all(|card| card.name != **effect)).cloned()
 }
 
 /// The record without noise on which gains are measured.

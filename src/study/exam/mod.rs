@@ -28,6 +28,7 @@ pub use case::{Case, Kind};
 pub use concealed::{Concealed, Outside};
 pub use conditions::{Conditions, Noise};
 pub use folder::{CaseFile, Written};
+pub use mark::Marked;
 pub use marks::{Hit, Marks};
 pub use result::ExamResult;
 pub use tally::Tally;
