@@ -7,7 +7,7 @@ use super::input;
 use super::outputs;
 use super::stdout;
 use lacuna::diagnose::Diagnosis;
-use lacuna::digits::{interval, number, with_unit};
+use lacuna::digits::{estimated, number};
 use lacuna::estimate::{Estimated, estimate_by, estimate_with};
 use lacuna::file::{Document, Format};
 use lacuna::optimise::Named;
@@ -64,12 +64,9 @@ pub fn run(args: &Args, seed: u64, look: &Console) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// A parameter with its 95 % interval, or why it has none.
+/// A parameter, and why it has no interval where it has none.
 fn line(p: &Estimated) -> String {
-    let value = match p.std_error {
-        Some(_) => interval(p.value, p.std_error, &p.unit),
-        None => with_unit(p.value, &p.unit),
-    };
+    let value = estimated(p.value, p.std_error, &p.unit);
     let why = match p.std_error {
         Some(_) => "",
         None if p.at_bound => " (at its bound)",

@@ -5,7 +5,7 @@ use super::console::Console;
 use super::failure::Failure;
 use super::no_model::Asked;
 use super::stdout;
-use lacuna::digits::{interval, number, with_unit};
+use lacuna::digits::{estimated, number};
 use lacuna::estimate::{LinearEstimate, LinearParameter, Mode, linear_with};
 use lacuna::report::documents;
 
@@ -58,11 +58,6 @@ fn words(mode: &Mode) -> String {
     }
 }
 
-/// A number of the model with its 95 % interval, where it has one.
 fn line(p: &LinearParameter) -> String {
-    let value = match p.std_error {
-        Some(_) => interval(p.value, p.std_error, &p.unit),
-        None => with_unit(p.value, &p.unit),
-    };
-    format!("{} = {value}", p.name)
+    format!("{} = {}", p.name, estimated(p.value, p.std_error, &p.unit))
 }

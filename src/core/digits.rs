@@ -80,6 +80,22 @@ pub fn interval(value: f64, std_error: Option<f64>, unit: &str) -> String {
     }
 }
 
+/// An estimated value with its unit: with a 95 % interval where it has a standard error, else with four
+/// significant digits.
+///
+/// ```
+/// use lacuna::digits::estimated;
+///
+/// assert_eq!(estimated(0.12, Some(0.003), "N m"), "0.1200 +- 0.0060 N m");
+/// assert_eq!(estimated(0.12, None, "N m"), "0.1200 N m");
+/// ```
+pub fn estimated(value: f64, std_error: Option<f64>, unit: &str) -> String {
+    match std_error {
+        Some(_) => interval(value, std_error, unit),
+        None => with_unit(value, unit),
+    }
+}
+
 /// Two significant digits.
 ///
 /// ```

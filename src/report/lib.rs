@@ -197,12 +197,7 @@ impl<'a> Report<'a> {
             let Some(after) = finding.after.test.get(name) else { continue };
             let unit =
                 finding.series.outputs.iter().find(|(n, _)| n == name).map_or("", |(_, u)| u);
-            let fit = match before.fit_percent.is_finite() {
-                true => {
-                    format!("fit {:.1} \u{2192} {:.1} %", before.fit_percent, after.fit_percent)
-                }
-                false => "no fit: what was measured is constant".into(),
-            };
+            let fit = sentences::fit(&[before, after]).replace("->", "\u{2192}");
             page.element(
                 "p",
                 "gain",

@@ -196,3 +196,34 @@ pub(crate) fn removed(
     }
     if bottom > 1e-12 { (top / bottom).clamp(0.0, 1.0) } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use lacuna_core::file::{Format, parse};
+
+    use super::*;
+
+    /// A first-order lag of this rate, in 1/s.
+    fn lag(rate: f64) -> System {
+        let text = format!(
+            "sampling_time = 0.1\n[model.equations]\ninputs = [{{ name = \"u\" }}]\n\
+             states = [{{ name = \"x\", derivative = \"{rate}*(u - x)\" }}]\n\
+             outputs = [{{ name = \"y\", value = \"x\" }}]\n"
+        );
+        parse(&text, "lag.toml", Format::Toml).unwrap()
+    }
+
+    #[test]
+    fn errors_of_models_that_forget_their_start_sooner_or_later_stand_at_the_same_samples() {
+        let u: Vec<f64> = (0..500).map(|k| (0.3 * f64::from(k)).sin()).collect();
+        let record = Record::new(0.1).input("u", u.clone()).unwrap().output("y", u).unwrap();
+        let data = TestData { records: vec![record], counted: Counted::After(Init::Forgotten) };
+        let [soon, late] = [5.0, 0.3].map(|rate| data.score(&lag(rate)).unwrap());
+        let known = |scored: &Scored| scored.errors[0].iter().filter(|e| e.is_finite()).count();
+        assert!(known(&late) < known(&soon), "{} {}", known(&late), known(&soon));
+        for scored in [&soon, &late] {
+            assert_eq!(scored.errors[0].len(), 500);
+            assert!(scored.errors[0][500 - known(scored)..].iter().all(|e| e.is_finite()));
+        }
+    }
+}

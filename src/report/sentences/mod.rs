@@ -25,7 +25,7 @@ pub use self::{
     notes::notes,
     plan::{experiment, look_alikes as pair, outlook, visibility},
     rest::details,
-    rest::{all_left, gain, held, look_alikes, record, rmse, shares, unweighed, withdrawn},
+    rest::{all_left, fit, gain, held, look_alikes, record, rmse, shares, unweighed, withdrawn},
     size::formula,
 };
 

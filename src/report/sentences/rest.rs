@@ -63,15 +63,18 @@ pub fn unweighed(why: Option<Unweighed>) -> &'static str {
 pub fn rmse(finding: &Finding, name: &str, before: &Metrics, after: &Metrics) -> String {
     let unit = spaced(finding.unit(name));
     let each = if finding.causes.is_empty() { vec![before] } else { vec![before, after] };
-    let both = |of: &dyn Fn(&Metrics) -> String| -> String {
-        each.iter().map(|m| of(m)).collect::<Vec<_>>().join(" -> ")
-    };
-    let rmse = both(&|m| number(m.rmse, None));
-    let fit = match before.fit_percent.is_finite() {
-        true => format!("fit {} %", both(&|m| format!("{:.1}", m.fit_percent))),
-        false => "no fit: what was measured is constant".into(),
-    };
-    format!("{name}: test RMSE {rmse}{unit}, {fit}")
+    let rmse: Vec<String> = each.iter().map(|m| number(m.rmse, None)).collect();
+    let rmse = rmse.join(" -> ");
+    format!("{name}: test RMSE {rmse}{unit}, {}", fit(&each))
+}
+
+/// `fit 79.0 -> 96.8 %`: one model after the other.
+pub fn fit(each: &[&Metrics]) -> String {
+    if each.iter().any(|m| !m.fit_percent.is_finite()) {
+        return "no fit: what was measured is constant".into();
+    }
+    let each: Vec<String> = each.iter().map(|m| format!("{:.1}", m.fit_percent)).collect();
+    format!("fit {} %", each.join(" -> "))
 }
 
 /// An interval of shares in per cent, to digits that tell its lower end from all of it.

@@ -10,7 +10,7 @@ use super::{Answer, Answers, CaseTruth, ExamResult, Marks};
 use crate::StudyError;
 use crate::data::{Step, Table, Want};
 use crate::file::{load, read_regular};
-use crate::register::registered;
+use crate::register::{Card, registered};
 
 /// What to try with an exam that is not whole.
 const AGAIN: &str = "write the exam again with `lacuna exam write`";
@@ -60,7 +60,8 @@ impl Written {
             }
             given.insert(answer.case, (answer, stored));
         }
-        let open = self.cases - given.len();
+        let unanswered = self.cases - given.len();
+        let known = registered();
         let mut unknown = vec![];
         let mut marks = vec![];
         for seal in &self.seal {
@@ -101,20 +102,19 @@ impl Written {
             };
             let answer = answer.map_or_else(silent, |(answer, _)| answer);
             marks.push(Marks::of(&truth, &answer, share));
-            unknown.extend(unregistered(&answer).map(|effect| (seal.case, effect)));
+            unknown.extend(unregistered(&answer, &known).map(|effect| (seal.case, effect)));
         }
-        Ok(Marked { result: ExamResult::new(marks)?, unanswered: open, unknown })
+        Ok(Marked { result: ExamResult::new(marks)?, unanswered, unknown })
     }
 }
 
-/// Effects of an answer that no plug-in registers.
-fn unregistered(answer: &Answer) -> impl Iterator<Item = String> {
-    let known = registered();
+/// Effects of an answer that none of these cards registers.
+fn unregistered(answer: &Answer, known: &[&Card]) -> impl Iterator<Item = String> {
     let parts = answer.causes.iter().flat_map(|cause| &cause.parts).map(|part| &part.effect);
     let others = answer.causes.iter().flat_map(|cause| &cause.indistinguishable);
     let named = answer.causes.iter().map(|cause| &cause.effect).chain(parts);
     let named = named.chain(others.map(|other| &other.effect));
-    named.filter(move |effect| known.iter().all(|card| card.name != **effect)).cloned()
+    named.filter(|effect| known.iter().all(|card| card.name != **effect)).cloned()
 }
 
 /// The record without noise on which gains are measured.
