@@ -11,6 +11,7 @@ mod exam;
 mod first_use;
 mod hard_plants;
 mod hidden_effect;
+mod inverse_dynamics;
 mod load_friction;
 mod network;
 mod noise_levels;

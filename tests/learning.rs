@@ -11,6 +11,7 @@ mod least_squares;
 mod orthogonal;
 mod paper_msd;
 mod restarts;
+mod stateless;
 mod trainer;
 mod training;
 mod well_posed;

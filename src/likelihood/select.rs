@@ -203,7 +203,7 @@ impl Predictor {
         let plan = &self.model.plan;
         for c in (0..nf).filter(|&c| c >= plan.sizes.w || plan.may_push(c)) {
             let dot = |a: usize, b: usize| {
-                path.g.chunks_exact(n * nf).fold(0.0, |sum, g| {
+                path.g.chunks_exact((n * nf).max(1)).fold(0.0, |sum, g| {
                     sum + (0..n).map(|i| g[i * nf + a] * g[i * nf + b]).sum::<f64>()
                 })
             };

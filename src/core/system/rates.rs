@@ -4,7 +4,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use crate::model::probe::{Along, Point, slope, value};
-use crate::model::{Ask, Law, Sizes};
+use crate::model::{Ask, Law, Signal, Sizes};
 
 use super::tables::{Origin, Sources};
 
@@ -20,6 +20,8 @@ pub struct Rates {
     origins: Vec<Origin>,
     /// States whose derivative is another state whatever the parameters are.
     defined: Vec<bool>,
+    /// Per input the input that is declared to be its rate of change.
+    of_inputs: Vec<Option<usize>>,
 }
 
 /// How much larger the parameters of a second look are.
@@ -57,6 +59,7 @@ impl Rates {
         let sizes = Sizes::of(&signals);
         let sources = Sources::of(&signals);
         let continuous = signals.time.is_continuous();
+        let of_inputs = rates_of_inputs(&signals.inputs);
         let mut seen = vec![];
         let mut defined = vec![continuous; sizes.x];
         for point in points(law, POINTS) {
@@ -70,8 +73,14 @@ impl Rates {
                 let is = |j: usize| i != j && dx[i] == point.x[j] && again[i] == point.x[j];
                 *defined &= (0..sizes.x).any(is);
             }
-            let dz = slope(law, sizes, Ask::Coordinates, &point, Along::State(&dx));
-            let dy = slope(law, sizes, Ask::Output, &point, Along::State(&dx));
+            let du: Vec<Option<f64>> = of_inputs.iter().map(|v| v.map(|v| point.u[v])).collect();
+            let known: Vec<f64> = du.iter().map(|du| du.unwrap_or(0.0)).collect();
+            let rate = |ask| -> Vec<f64> {
+                let of_states = slope(law, sizes, ask, &point, Along::State(&dx));
+                let of_inputs = slope(law, sizes, ask, &point, Along::Input(&known));
+                of_states.iter().zip(&of_inputs).map(|(x, u)| x + u).collect()
+            };
+            let (dz, dy) = (rate(Ask::Coordinates), rate(Ask::Output));
             let pick = |states: &[f64], own: &[f64], outputs: &[f64], inputs: &[f64], time: f64| {
                 sources
                     .entries
@@ -87,14 +96,14 @@ impl Rates {
                     .collect::<Vec<_>>()
             };
             let values = pick(&point.x, &z, &y, &point.u, point.time);
-            let nothing = vec![f64::NAN; sizes.u];
-            let rates = pick(&dx, &dz, &dy, &nothing, 1.0);
+            let du: Vec<f64> = du.iter().map(|du| du.unwrap_or(f64::NAN)).collect();
+            let rates = pick(&dx, &dz, &dy, &du, 1.0);
             if continuous {
                 seen.push((values, rates));
             }
         }
         let origins = sources.entries.iter().map(|(_, origin)| *origin).collect();
-        Self { seen, origins, defined }
+        Self { seen, origins, defined, of_inputs }
     }
 
     /// Whether the equation of a state only says what another state is (q' = v): nothing can be
@@ -109,8 +118,10 @@ impl Rates {
             return None;
         }
         (0..self.origins.len()).find_map(|other| {
-            if matches!(self.origins[other], Origin::Time | Origin::Input(_)) {
-                return None;
+            match self.origins[other] {
+                Origin::Time => return None,
+                Origin::Input(i) if !self.of_inputs.contains(&Some(i)) => return None,
+                _ => {}
             }
             let (values, rates) = &self.seen[0];
             let factor = rates[entry] / values[other];
@@ -142,6 +153,23 @@ impl Rates {
     }
 }
 
+/// Per input the input that is its rate of change, as quantities and units declare: a velocity in the unit
+/// of one other input per second, and of no more than that one.
+fn rates_of_inputs(inputs: &[Signal]) -> Vec<Option<usize>> {
+    let is_velocity = |i: usize| inputs[i].quantity.as_ref().is_some_and(|q| q.is_velocity());
+    let is_rate = |v: usize, p: usize| {
+        is_velocity(v)
+            && !is_velocity(p)
+            && !inputs[p].unit.is_empty()
+            && inputs[v].unit == format!("{}/s", inputs[p].unit)
+    };
+    let only = |mut found: Vec<usize>| found.pop().filter(|_| found.is_empty());
+    let all = 0..inputs.len();
+    let rate = |p: usize| only(all.clone().filter(|&v| is_rate(v, p)).collect());
+    let moves = |v: usize| only(all.clone().filter(|&p| is_rate(v, p)).collect());
+    all.clone().map(|p| rate(p).filter(|&v| moves(v) == Some(p))).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use crate::file::{Format, parse};
@@ -164,5 +192,38 @@ mod tests {
         // a factor of 1 that is a parameter may be wrong
         assert_eq!(rates("c*v"), [false, false]);
         assert_eq!(rates("v - q"), [false, false]);
+    }
+
+    #[test]
+    fn a_recorded_velocity_is_the_rate_of_the_one_position_of_its_unit() {
+        let rate = |inputs: &[(&str, &str, &str)]| {
+            let list: Vec<String> = inputs
+                .iter()
+                .map(|(name, unit, quantity)| {
+                    format!("{{ name = \"{name}\", unit = \"{unit}\"{quantity} }}")
+                })
+                .collect();
+            let text = format!(
+                "sampling_time = 0.01\n[model.equations]\ninputs = [{}]\n\
+                 outputs = [{{ name = \"y\", value = \"2*q\" }}]\n",
+                list.join(", ")
+            );
+            let system = parse(&text, "still.toml", Format::Toml).unwrap();
+            let plan = system.plan(0.01).unwrap();
+            let name = |entry: usize| plan.sources.entries[entry].0.name.clone();
+            ["q", "y"].map(|of| {
+                let of = plan.sources.find(of).unwrap();
+                plan.rates.rate(of).map(|(rate, factor)| (name(rate), factor))
+            })
+        };
+        let velocity = ", quantity = \"velocity\"";
+        let both = [("q", "rad", ""), ("w", "rad/s", velocity)];
+        let found = |factor| Some(("w".to_string(), factor));
+        assert_eq!(rate(&both), [found(1.0), found(2.0)]);
+        // not declared, of another unit, or of two of them
+        assert_eq!(rate(&[("q", "rad", ""), ("w", "rad/s", "")]), [None, None]);
+        assert_eq!(rate(&[("q", "rad", ""), ("w", "m/s", velocity)]), [None, None]);
+        let two = [both[0], both[1], ("p", "rad", ""), ("r", "rad/s", velocity)];
+        assert_eq!(rate(&two), [None, None]);
     }
 }

@@ -29,6 +29,8 @@ pub(crate) enum Preference {
     /// gain, bias, delay, lag.
     Simple,
     DeclaredChannel,
+    /// An output that is a balance of its own, as the channel of a missing law.
+    Balance,
     Input,
     Output,
     DefaultChannel,

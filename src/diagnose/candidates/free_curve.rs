@@ -111,7 +111,7 @@ impl Drawing<'_, '_> {
         let sources = builder.sources();
         for group in &groups {
             let target = group[0].0;
-            for &source in &sources {
+            for &source in sources.iter().filter(|&&source| builder.may_see(target, source)) {
                 let own = group.iter().any(|&(t, _)| {
                     let origin = base.sources.entries[source].1;
                     matches!(origin, Origin::Input(_)) && base.targets.entries[t].1 == origin

@@ -86,8 +86,12 @@ impl Drawing<'_, '_> {
         let (mut surfaces, mut tried) = (vec![], 0);
         for (number, group) in groups.iter().enumerate() {
             let target = group[0].0;
+            let sees = |i: usize| builder.may_see(target, moving[i].source);
             let wants = |law: usize| {
-                chosen.as_ref().is_none_or(|chosen| chosen.contains(&(number * laws + law)))
+                let of = law.checked_sub(moving.len()).map_or((law, law), |pair| pairs[pair]);
+                sees(of.0)
+                    && sees(of.1)
+                    && chosen.as_ref().is_none_or(|chosen| chosen.contains(&(number * laws + law)))
             };
             let open: Vec<usize> = (0..pairs.len()).filter(|i| wants(moving.len() + i)).collect();
             let with = |i: usize| open.iter().any(|&p| pairs[p].0 == i || pairs[p].1 == i);

@@ -105,16 +105,18 @@ impl<'a, 'b> Builder<'a, 'b> {
 }
 
 impl Builder<'_, '_> {
-    /// Own channels and inputs that push the same way, the preferred one first.
+    /// Own channels, inputs, and outputs that are balances of their own: those that push the same way
+    /// together, the preferred one first.
     pub(crate) fn channels(&self) -> Vec<Vec<(usize, f64)>> {
         let mut groups: Vec<Vec<(usize, f64)>> = vec![];
         let mut order: Vec<usize> = (0..self.problem.base.targets.entries.len())
             .filter(|&e| match self.problem.base.targets.entries[e].1 {
                 Origin::Own(channel) => self.problem.base.may_push(channel),
-                origin => !matches!(origin, Origin::Output(_)),
+                Origin::Output(output) => self.nominal.algebraic.is(output),
+                _ => true,
             })
             .collect();
-        order.sort_by_key(|&e| self.preference(e));
+        order.sort_by_key(|&e| self.preference(e, false));
         for entry in order {
             let same = groups.iter_mut().find_map(|group| {
                 self.nominal.parallel(group[0].0, entry).map(|factor| (group, factor))
@@ -127,8 +129,9 @@ impl Builder<'_, '_> {
         groups
     }
 
-    pub(crate) fn preference(&self, target: usize) -> Preference {
+    pub(crate) fn preference(&self, target: usize, own_path: bool) -> Preference {
         match self.problem.base.targets.entries[target].1 {
+            Origin::Output(o) if !own_path && self.nominal.algebraic.is(o) => Preference::Balance,
             Origin::Own(_) if self.problem.base.declared_channels => Preference::DeclaredChannel,
             Origin::Own(_) => Preference::DefaultChannel,
             Origin::Input(_) => Preference::Input,
@@ -146,6 +149,13 @@ impl Builder<'_, '_> {
             }
         }
         kept
+    }
+
+    /// Whether a law of a source may be missing at a target; an output has no law of an output.
+    pub(crate) fn may_see(&self, target: usize, source: usize) -> bool {
+        let base = &self.problem.base;
+        let into_output = matches!(base.targets.entries[target].1, Origin::Output(_));
+        !(into_output && matches!(base.sources.entries[source].1, Origin::Output(_)))
     }
 
     pub(crate) fn time(&self) -> usize {
@@ -176,16 +186,17 @@ impl Builder<'_, '_> {
         };
         let sign = match card.sign {
             SignRule::Any => 0.0,
-            SignRule::Opposing { polarity } => -push.signum() * f64::from(polarity),
-            SignRule::Along if push != 0.0 => push.signum(),
-            SignRule::Along => 0.0,
             SignRule::Positive => 1.0,
+            // what pushes nothing may have either sign
+            _ if push == 0.0 => 0.0,
+            SignRule::Opposing { polarity } => -push.signum() * f64::from(polarity),
+            SignRule::Along => push.signum(),
         };
         let card = self.shared(card);
         let (target_signal, target_origin) = &base.targets.entries[spot.target];
         let source_signal = &base.sources.entries[source].0;
         let simple = card.properties.of_an_instrument;
-        let preference = self.preference(spot.target);
+        let preference = self.preference(spot.target, spot.own_path);
         for Pattern { starts, linear, refine, size } in grid.patterns.iter().cloned() {
             let natural = self.nominal.natural[spot.target];
             let on_path = matches!(target_origin, Origin::Input(_) | Origin::Output(_));

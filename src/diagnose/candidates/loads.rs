@@ -22,7 +22,8 @@ impl Builder<'_, '_> {
             let signal = &base.sources.entries[load].0;
             let most = self.nominal.series(load).iter().fold(0.0, |m: f64, v| m.max(v.abs()));
             let moves = most > 0.0 && most.is_finite();
-            if !moves || !base.may_load(load, unit) || Some(load) == spot.source {
+            let offered = moves && base.may_load(load, unit) && self.may_see(spot.target, load);
+            if !offered || Some(load) == spot.source {
                 continue;
             }
             let first = self.found.len();

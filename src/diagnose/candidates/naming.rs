@@ -32,7 +32,9 @@ impl Candidate {
             origin: origin.map(|own| own.name.to_string()),
             site: self.site(),
             is_constant: self.card.needs == Needs::Nothing && self.card.mechanism == Mechanism::Law,
-            is_friction: self.card.properties.is_friction && !self.named.bare,
+            is_friction: self.card.properties.is_friction
+                && !self.named.bare
+                && self.place != Preference::Balance,
             nominal,
             units: self.units.clone(),
             ..Wording::default()

@@ -126,11 +126,14 @@ impl Builder<'_, '_> {
                 .map(|&(t, factor)| (base.targets.entries[t].0.name.clone(), of.clone(), factor))
                 .collect::<Vec<_>>()
         };
-        let is_input = matches!(base.targets.entries[target].1, Origin::Input(_));
+        // the path of an input or an output has its own laws of nothing and of time already
+        let on_path =
+            matches!(base.targets.entries[target].1, Origin::Input(_) | Origin::Output(_));
+        // what enters no state pushes nothing: a law of a velocity may be there with either sign
+        let balance = matches!(base.targets.entries[target].1, Origin::Output(_));
         match card.needs {
             Needs::Nothing => {
-                // the path of an input has its own offset already
-                match is_input {
+                match on_path {
                     true => self.also_stands_for(name, target, None, &twins(None)),
                     false => {
                         let spot = Spot { target, source: None, own_path: false };
@@ -139,7 +142,7 @@ impl Builder<'_, '_> {
                 }
                 return;
             }
-            Needs::AngleOrTime if !is_input => {
+            Needs::AngleOrTime if !on_path => {
                 let time = self.time();
                 let spot = Spot { target, source: Some(time), own_path: false };
                 self.push(name, shape, card, spot, 0.0, None, twins(Some(time)));
@@ -148,6 +151,9 @@ impl Builder<'_, '_> {
             _ => {}
         }
         for &source in sources {
+            if !self.may_see(target, source) {
+                continue;
+            }
             if input_of_group(source) {
                 // the same as a curve in the input's own path
                 self.also_stands_for(name, target, Some(source), &twins(Some(source)));
@@ -167,7 +173,7 @@ impl Builder<'_, '_> {
                     let Some(d) = self.push_of(target, source) else { continue };
                     if !velocity
                         || !both
-                        || d == 0.0
+                        || d == 0.0 && !balance
                         || known_position
                             && signal.quantity.is_none()
                             && !base.rates.is_rate(source)
@@ -184,7 +190,8 @@ impl Builder<'_, '_> {
                 }
                 Needs::CoordinateWithRate => {
                     let Some(rate) = base.rates.rate(source) else { continue };
-                    let Some(d) = self.push_of(target, rate.0).filter(|d| *d != 0.0) else {
+                    let Some(d) = self.push_of(target, rate.0).filter(|d| balance || *d != 0.0)
+                    else {
                         continue;
                     };
                     (d * rate.1, Some(rate))
@@ -198,7 +205,8 @@ impl Builder<'_, '_> {
                     let rate =
                         if is_velocity { Some((source, 1.0)) } else { base.rates.rate(source) };
                     let Some(rate) = rate.filter(|_| !(is_velocity && position)) else { continue };
-                    let Some(d) = self.push_of(target, rate.0).filter(|d| *d != 0.0) else {
+                    let Some(d) = self.push_of(target, rate.0).filter(|d| balance || *d != 0.0)
+                    else {
                         continue;
                     };
                     (d * rate.1, Some(rate))
@@ -258,7 +266,9 @@ impl Builder<'_, '_> {
     ) {
         let base = self.problem.base.clone();
         for (target, (_, origin)) in base.targets.entries.iter().enumerate() {
-            if !matches!(origin, Origin::Output(_)) {
+            // a balance has its channel already
+            let wanted = matches!(origin, Origin::Output(o) if !self.nominal.algebraic.is(*o));
+            if !wanted {
                 continue;
             }
             for (source, (_, origin)) in base.sources.entries.iter().enumerate() {

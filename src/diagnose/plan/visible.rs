@@ -16,7 +16,9 @@ pub(crate) fn natural(cause: &Candidate) -> f64 {
     match (&cause.wire, cause.place) {
         _ if cause.blended() => 1.0,
         (Wire::Parameter(_) | Wire::Drift(_), _) => 100.0 * cause.probe.abs(),
-        (_, Preference::Input | Preference::Output) => 100.0 * cause.probe.abs(),
+        (_, Preference::Balance | Preference::Input | Preference::Output) => {
+            100.0 * cause.probe.abs()
+        }
         _ => 1000.0 * cause.probe.abs(),
     }
 }

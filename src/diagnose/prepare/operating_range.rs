@@ -6,6 +6,7 @@ use crate::effect::View;
 use crate::fit::problem::{Grain, Model, Part, Problem};
 use crate::model::probe::{Along, Point, slope};
 use crate::model::{Ask, Sizes};
+use crate::prepare::algebraic::Algebraic;
 use crate::prepare::pushes::Pushes;
 use crate::prepare::regressors::Features;
 use crate::statistics::{deviation, median, rms};
@@ -33,7 +34,11 @@ pub(crate) struct Nominal {
     pub natural: Vec<f64>,
     /// Change of the derivatives (rows) by each own channel and input, at several samples.
     columns: Vec<Vec<f64>>,
-    /// The same of other parameter values.
+    /// Change of the outputs that are balances of their own by each of these, and by themselves.
+    direct: Vec<Vec<f64>>,
+    /// Which outputs those are.
+    pub algebraic: Algebraic,
+    /// The columns of other parameter values.
     pub pushes: Arc<Pushes>,
     sizes: Sizes,
     /// Samples looked at.
@@ -72,6 +77,13 @@ impl Nominal {
             })
             .collect();
         let targets = 0..base.targets.entries.len();
+        let algebraic = Algebraic::new(problem.system.model.as_ref(), n, &points);
+        let direct = |(_, origin): &(_, Origin)| match *origin {
+            Origin::Input(i) => algebraic.of_input(i),
+            Origin::Output(o) => algebraic.of_output(o),
+            _ => algebraic.of_state(),
+        };
+        let direct = base.targets.entries.iter().map(direct).collect();
         let pushes = Pushes::new(problem.system.model.as_ref(), base.clone(), points);
         let columns: Vec<Vec<f64>> = targets.map(|target| pushes.columns(target)).collect();
         let dt = base.sampling_time;
@@ -99,6 +111,8 @@ impl Nominal {
             seen: track.seen,
             natural,
             columns,
+            direct,
+            algebraic,
             pushes: Arc::new(pushes),
             sizes: n,
             count: known,
@@ -113,17 +127,18 @@ impl Nominal {
     }
 
     /// The factor between the columns of two targets that are parallel everywhere:
-    /// one unit into `b` acts like this many into `a`.
+    /// one unit of `b` acts like this many of `a`.
     pub fn parallel(&self, a: usize, b: usize) -> Option<f64> {
-        let (a, b) = (&self.columns[a], &self.columns[b]);
-        let squares: f64 = a.iter().map(|v| v * v).sum();
-        if squares == 0.0 {
-            return None;
-        }
-        let factor = a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>() / squares;
-        let largest = b.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let off = a.iter().zip(b).fold(0.0, |m: f64, (a, b)| m.max((b - factor * a).abs()));
-        (factor != 0.0 && off <= 1e-9 * largest).then_some(factor)
+        let parts = [[&self.columns[a], &self.columns[b]], [&self.direct[a], &self.direct[b]]];
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let [a, b] = parts.into_iter().find(|[a, _]| a.iter().any(|v| *v != 0.0))?;
+        let factor = product(a, b) / product(a, a);
+        let follows = |[a, b]: [&Vec<f64>; 2]| {
+            let largest = b.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+            let off = a.iter().zip(b).fold(0.0, |m: f64, (a, b)| m.max((b - factor * a).abs()));
+            off <= 1e-9 * largest
+        };
+        (factor != 0.0 && parts.into_iter().all(follows)).then_some(factor)
     }
 
     /// D: the rate at which one unit into target `target` changes source `source`, per s;

@@ -50,6 +50,7 @@ mod sampled;
 mod scaling;
 mod slopes;
 mod started;
+mod stateless;
 mod statistical;
 mod window;
 
@@ -60,6 +61,7 @@ pub use initialise::{
 pub use linear::LinearEncoder;
 pub use resnet::ResNetEncoder;
 pub use scaling::Scaling;
+pub use stateless::StatelessEncoder;
 pub use window::Window;
 
 // machinery that sibling crates and the program share; it may change at any time

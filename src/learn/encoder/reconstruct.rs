@@ -237,6 +237,10 @@ struct Hidden {
 /// not change the inverse where the rank is full).
 fn left_inverse(matrix: &DMatrix<f64>, forgets: &DMatrix<f64>) -> Result<LeftInverse, Hidden> {
     let n = matrix.ncols();
+    if n == 0 {
+        let matrix = DMatrix::zeros(0, matrix.nrows());
+        return Ok(LeftInverse { matrix, rank: 0, condition: 1.0 });
+    }
     let lengths: Vec<f64> = matrix.column_iter().map(|c| c.norm()).collect();
     let longest = lengths.iter().fold(0.0, |most: f64, &l| most.max(l));
     let silent = |length: f64| length <= f64::MIN_POSITIVE.max(1e-200 * longest);

@@ -50,7 +50,8 @@ pub struct Structure {
     pub augmented_states: usize,
     /// Whether the state equation is augmented (parallel, series-out).
     pub state_equation: bool,
-    /// Whether the output equation is augmented as well (parallel, series-out).
+    /// Whether the output equation is augmented as well (parallel, series-out); that of a model
+    /// without states always is.
     pub output_equation: bool,
     /// Widths of the networks' hidden layers.
     pub hidden: Vec<usize>,
@@ -155,11 +156,13 @@ impl Structure {
                 let own = |result: Vec<Port<Source>>| if behind { result } else { vec![] };
                 let mut moved = if self.state_equation { plan.next_states() } else { vec![] };
                 moved.extend(plan.next_augmented());
-                if !(moved.is_empty() && self.output_equation) {
+                // a model without states has the output equation only
+                let output = self.output_equation || plan.n == 0;
+                if !(moved.is_empty() && output) {
                     let seen = [seen.clone(), own(plan.f_base())].concat();
                     plan.learn(&seen, &moved, self, seed)?;
                 }
-                if self.output_equation {
+                if output {
                     let moved = plan.measured();
                     plan.learn(&[seen, own(plan.h_base())].concat(), &moved, self, seed ^ OTHER)?;
                 }

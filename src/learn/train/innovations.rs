@@ -14,6 +14,7 @@
 use nalgebra::DMatrix;
 
 use super::course::Course;
+use super::modes::spectral_radius;
 use super::sections::{Outcome, Sections};
 use super::{Augmented, Score, TrainError};
 use crate::encoder::{About, SampledLinear};
@@ -105,10 +106,7 @@ impl Gain {
         for &(at, x, o, _) in self.entries.iter().filter(|(_, x, ..)| *x < a.nrows()) {
             k[(x, o)] = parameters[at];
         }
-        let largest = |share: f64| {
-            let moves = a - &k * c * share;
-            moves.complex_eigenvalues().iter().map(|p| p.norm()).fold(0.0, f64::max)
-        };
+        let largest = |share: f64| spectral_radius(&(a - &k * c * share));
         if largest(1.0) <= STABLE || largest(0.0) >= STABLE {
             return 1.0;
         }

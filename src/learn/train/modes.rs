@@ -26,6 +26,19 @@ pub(super) struct Mode {
     step: f64,
 }
 
+/// The eigenvalues of a matrix, real and imaginary parts; none of one without rows.
+pub(super) fn poles(a: &DMatrix<f64>) -> Vec<(f64, f64)> {
+    match a.is_empty() {
+        true => vec![],
+        false => a.complex_eigenvalues().iter().map(|p| (p.re, p.im)).collect(),
+    }
+}
+
+/// The largest size of an eigenvalue; 0 where there is none.
+pub(super) fn spectral_radius(a: &DMatrix<f64>) -> f64 {
+    poles(a).into_iter().map(|(re, im)| re.hypot(im)).fold(0.0, f64::max)
+}
+
 /// Influence of a start at which it counts as forgotten.
 const FORGOTTEN: f64 = 1e-2;
 
@@ -40,9 +53,8 @@ impl Mode {
 
     /// The stable modes of a linear model, sampled every `step` s.
     pub fn all(a: &DMatrix<f64>, b: &DMatrix<f64>, step: f64) -> Vec<Self> {
-        let poles = a.complex_eigenvalues();
-        let upper = poles.iter().filter(|p| p.im >= 0.0 && p.re.hypot(p.im) < 1.0);
-        upper.filter_map(|pole| Self::of(a, b, (pole.re, pole.im), step)).collect()
+        let upper = poles(a).into_iter().filter(|p| p.1 >= 0.0 && p.0.hypot(p.1) < 1.0);
+        upper.filter_map(|pole| Self::of(a, b, pole, step)).collect()
     }
 
     fn of(a: &DMatrix<f64>, b: &DMatrix<f64>, pole: (f64, f64), step: f64) -> Option<Self> {

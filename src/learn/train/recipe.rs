@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::data::Record;
 use crate::encoder::{
-    Baseline as Known, Encoder, EncoderInitialiser, Linearised, ResNetEncoder, Spread, Started,
-    Window,
+    Baseline as Known, Encoder, EncoderInitialiser, Linearised, Random, ResNetEncoder, Spread,
+    Started, StatelessEncoder, Window,
 };
 use crate::lfr::{Baseline, ClosedLoop, Sampled, Scales, Structure};
 use crate::system::System;
@@ -114,8 +114,13 @@ impl Recipe {
             None => Known::new(system, record)?,
         };
         let known = known.augmented(augmented_states);
-        let mut encoder = self.encoder.clone();
-        let mut started = self.initialiser.initialise(encoder.as_mut(), &known, seed)?;
+        // where there is no state there is nothing to estimate
+        let nothing = known.shape().states() == 0;
+        let mut encoder =
+            if nothing { Box::new(StatelessEncoder::default()) } else { self.encoder.clone() };
+        let initialiser: &dyn EncoderInitialiser =
+            if nothing { &Random {} } else { self.initialiser.as_ref() };
+        let mut started = initialiser.initialise(encoder.as_mut(), &known, seed)?;
         let scaling = known.scaling()?;
         let pairs = |spreads: &[Spread]| spreads.iter().map(|s| (s.offset, s.scale)).collect();
         let states = known.shape().baseline_states;

@@ -10,6 +10,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::modes::spectral_radius;
 use crate::encoder::{Baseline as Known, EncoderError, SampledLinear};
 use crate::lfr::Sink;
 
@@ -35,7 +36,7 @@ impl Tangent {
         let n = known.shape().baseline_states;
         let states = &scaling.states[..n];
         let linear = known.linear_along()?.system;
-        let largest = linear.a.complex_eigenvalues().iter().map(|p| p.norm()).fold(0.0, f64::max);
+        let largest = spectral_radius(&linear.a);
         let mut k = DMatrix::zeros(n, linear.c.nrows());
         if known.is_looped() || !(largest < FORGETS) {
             let q = DVector::from_iterator(n, states.iter().map(|s| (NOISE * s.scale).powi(2)));

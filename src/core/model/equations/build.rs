@@ -88,12 +88,8 @@ impl<'a> Builder<'a> {
 
     fn names(&mut self) {
         self.names = Names::of(self.table, &mut self.graph, &mut self.errors);
-        for (key, empty) in
-            [("states", self.table.states.is_empty()), ("outputs", self.table.outputs.is_empty())]
-        {
-            if empty {
-                self.fault(key, Problem::NoEntries);
-            }
+        if self.table.outputs.is_empty() {
+            self.fault("outputs", Problem::NoEntries);
         }
     }
 

@@ -26,7 +26,8 @@ pub struct Table {
     /// What drives the model; empty where nothing does.
     #[serde(default)]
     pub inputs: Vec<Input>,
-    /// What it remembers.
+    /// What it remembers; empty where outputs follow from the inputs of the same instant.
+    #[serde(default)]
     pub states: Vec<State>,
     /// What is measured.
     pub outputs: Vec<Output>,
