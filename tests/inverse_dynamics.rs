@@ -8,6 +8,8 @@ use std::f64::consts::TAU;
 
 use lacuna::data::{Record, noise};
 use lacuna::diagnose::{Finding, Verdict};
+use lacuna::file::{Format, parse};
+use lacuna::likelihood::Predictor;
 
 use super::arm;
 
@@ -181,4 +183,50 @@ fn friction_with_memory_is_told_from_dry_friction() {
     let finding = arm::diagnosed(JOINT, &record);
     println!("{}", lacuna::report::sentences::summary(&finding));
     assert_eq!(names(&finding), [("hysteresis", "tau", Some("q"))]);
+}
+
+#[test]
+fn what_a_torque_lacks_is_shown_before_it_is_named() {
+    let record = record(2000, 41, |[one, two]| {
+        [vec![0.0; one[0].len()], two[1].iter().map(|v| 0.3 * (v / 0.02).tanh()).collect()]
+    });
+    let system = parse(ARM, "arm.toml", Format::Toml).unwrap();
+    let missing = Predictor::new(&system, &[record]).unwrap().missing().unwrap();
+    let seen: Vec<_> = missing.iter().filter(|force| force.is_seen()).collect();
+    assert_eq!(seen.len(), 1, "{:?}", seen.iter().map(|force| &force.channel).collect::<Vec<_>>());
+    let first = &seen[0].explained_by[0];
+    assert_eq!((&seen[0].channel[..], &first.coordinate[..]), ("tau2", "qd2"));
+    assert!(
+        first.share > 0.9 && (seen[0].rms - 0.29).abs() < 0.03,
+        "{} {}",
+        first.share,
+        seen[0].rms
+    );
+}
+
+/// A load cell behind a filter: a state that passes its input on, a direct path, and what moves in it
+/// disturbed from inside.
+#[test]
+fn a_law_beside_noise_inside_the_plant_is_found_in_the_balance() {
+    let model = "sampling_time = 0.01\n[model.equations]\n\
+        inputs = [{ name = \"x\", unit = \"m\", quantity = \"position\" }, \
+                  { name = \"v\", unit = \"m/s\", quantity = \"velocity\" }]\n\
+        states = [{ name = \"s\", unit = \"N\", derivative = \"(k*x - s)/T\" }]\n\
+        outputs = [{ name = \"force\", unit = \"N\", value = \"s + c*v\" }]\n\
+        parameters = [{ name = \"k\", value = 20.0, unit = \"N/m\" }, \
+                      { name = \"c\", value = 2.0, unit = \"N s/m\" }, \
+                      { name = \"T\", value = 0.3, unit = \"s\", min = 0.01, fixed = true }]\n";
+    let [x, v, _] = motion(4000, 51);
+    let (inside, sensor) =
+        (noise::white(4000, 0.4, 52).unwrap(), noise::white(4000, 0.05, 53).unwrap());
+    let (mut s, mut force) = (0.0, vec![]);
+    for k in 0..x.len() {
+        force.push(s + 2.0 * v[k] + 3.0 * (v[k] / 0.02).tanh() + sensor[k]);
+        s += (1.0 - (-STEP / 0.3_f64).exp()) * (20.0 * x[k] - s) + inside[k];
+    }
+    let record = Record::new(STEP).input("x", x).unwrap().input("v", v).unwrap();
+    let finding = arm::diagnosed(model, &record.output("force", force).unwrap());
+    println!("{}", lacuna::report::sentences::summary(&finding));
+    assert_eq!(names(&finding), [("coulomb_friction", "force", Some("v"))]);
+    assert!(off(&finding, "level", 3.0) < 4.0);
 }

@@ -202,7 +202,7 @@ fn rehearsed(
 
 fn summarise(finding: &Finding, rehearsed: Option<&Rehearsed>, out: &Path, look: &Console) {
     if finding.interrupted {
-        look.result("Interrupted: this is what was known.");
+        look.result(sentences::INTERRUPTED);
     }
     look.headline(&sentences::headline(finding));
     let rehearsed = rehearsed.map(Rehearsed::sentences).unwrap_or_default();

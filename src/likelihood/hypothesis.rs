@@ -16,7 +16,7 @@ use super::predictor::{Predictor, column};
 use super::replay::Pass;
 use super::tangent::{Site, gram};
 use crate::effect::Role;
-use crate::system::{Placed, Plan};
+use crate::system::{Origin, Placed, Plan};
 
 /// Iterations at most between two estimates of the noise, dampings tried in each, and the change of
 /// log L at which a fit is settled.
@@ -213,7 +213,9 @@ impl Predictor {
     /// One column per free number of a hypothesis.
     pub(crate) fn slopes(&self, of: &Hypothesis, run: &Followed) -> Vec<(Site, Vec<f64>)> {
         let path = &run.path;
-        let entries = self.model.plan.sources.entries.len();
+        let sources = &self.model.plan.sources.entries;
+        let entries = sources.len();
+        let own_path = |output: usize, e: usize| sources[e].1 == Origin::Output(output);
         let mut columns = vec![];
         for part in &of.parts {
             match part {
@@ -223,7 +225,9 @@ impl Predictor {
                 Part::Law { site, source, law } => {
                     let z = match (site, source) {
                         (_, None) => vec![1.0; path.len],
-                        (Site::Output(o), _) => column(&path.predicted, path.outputs, *o),
+                        (Site::Output(o), Some(e)) if own_path(*o, *e) => {
+                            column(&path.predicted, path.outputs, *o)
+                        }
                         (_, Some(e)) => column(&path.seen, entries, *e),
                     };
                     let load = law.load.map(|e| column(&path.seen, entries, e)).unwrap_or_default();

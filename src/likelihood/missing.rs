@@ -1,4 +1,5 @@
-//! The missing force as a signal: a smoother with a random walk on one channel, no law assumed.
+//! The missing force as a signal: a smoother with a random walk on one channel, or in an output equation that is
+//! a balance of its own, no law assumed.
 //!
 //! x[k+1] = F(x, u, m), m[k+1] = m[k] + increments, y = h(x) + v: the variances of increments and of v
 //! by maximum likelihood, then E(m[k] | all y) and its standard deviation, and the share that each
@@ -16,7 +17,7 @@ use super::path::Path;
 use super::predictor::{Predictor, column, starts};
 use super::replay::Pass;
 use super::share::share;
-use crate::system::Transition;
+use crate::system::{Origin, Transition};
 
 /// Sizes that the walk is begun with, in units of the channel's force scale, and the measurement
 /// noise in units of the outputs' spreads.
@@ -33,7 +34,7 @@ const ENDS: f64 = 0.01;
 /// One channel's missing force.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MissingForce {
-    /// Channel or input that it would enter.
+    /// Channel, input or output that it would enter.
     pub channel: String,
     /// Its unit.
     pub unit: String,
@@ -74,8 +75,18 @@ impl MissingForce {
     }
 }
 
+/// Where a force may be missing.
+#[derive(Debug, Clone, Copy)]
+enum Lacking {
+    /// In a channel, or an input counted behind them.
+    Force(usize),
+    /// In an output equation.
+    Output(usize),
+}
+
 impl Predictor {
-    /// The missing force of every channel and input, the one that is explained best first.
+    /// The missing force of every channel and input, and of outputs that are balances of their own (torques
+    /// of an inverse dynamic model), the one that is explained best first.
     ///
     /// Channels that push as an earlier one does are left out.
     ///
@@ -104,15 +115,16 @@ impl Predictor {
         let path = self.tracking(&self.model)?;
         let start = self.white(self.spread.iter().map(|s| s * s + f64::MIN_POSITIVE).collect());
         let without = most_likely(&path, &start, &start.components()).1;
-        let mut channels = self.distinct(&path);
-        if channels.len() > most {
-            let likely = |&c: &usize| (self.walks(&path, c, &NOISES[1..2]).1, c);
-            let mut order: Vec<(f64, usize)> = channels.par_iter().map(likely).collect();
+        let mut sites = self.lacking(&path);
+        if sites.len() > most {
+            let likely =
+                |(i, &site): (usize, &Lacking)| (self.walks(&path, site, &NOISES[1..2]).1, i);
+            let mut order: Vec<(f64, usize)> = sites.par_iter().enumerate().map(likely).collect();
             order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-            channels = order.into_iter().map(|(_, c)| c).take(most).collect();
+            sites = order.into_iter().map(|(_, i)| sites[i]).take(most).collect();
         }
-        let force = |&c: &usize| (!stop()).then(|| self.force(&path, c, without));
-        let mut found = channels.par_iter().filter_map(force).collect::<Result<Vec<_>, _>>()?;
+        let force = |&site: &Lacking| (!stop()).then(|| self.force(&path, site, without));
+        let mut found = sites.par_iter().filter_map(force).collect::<Result<Vec<_>, _>>()?;
         let values: Vec<(String, f64)> =
             found.iter().map(|f| (f.channel.clone(), f.gain)).collect();
         for force in &mut found {
@@ -125,8 +137,20 @@ impl Predictor {
         Ok(found)
     }
 
-    fn force(&self, path: &Path, c: usize, without: f64) -> Result<MissingForce, LikelihoodError> {
-        let mut noise = self.walking(path, c);
+    /// Where something may be missing: distinct forces, and measured outputs that are balances.
+    fn lacking(&self, path: &Path) -> Vec<Lacking> {
+        let is = |&o: &usize| self.model.plan.balances[o] && self.spread[o] > 0.0;
+        let outputs = (0..path.outputs).filter(is).map(Lacking::Output);
+        self.distinct(path).into_iter().map(Lacking::Force).chain(outputs).collect()
+    }
+
+    fn force(
+        &self,
+        path: &Path,
+        at: Lacking,
+        without: f64,
+    ) -> Result<MissingForce, LikelihoodError> {
+        let mut noise = self.walking(path, at);
         let mut run = self.run(&self.model, &noise, Wanted::default())?;
         if run.log_likelihood.is_finite() {
             noise = most_likely(&run.path, &noise, &noise.components()).0;
@@ -148,29 +172,39 @@ impl Predictor {
                 path.states[at] - path.jump[at] + smoothed.mean[k * na + i]
             })
             .collect();
-        let (channel, unit) = self.forces().swap_remove(c);
+        let (channel, unit) = match at {
+            Lacking::Output(o) => self.outputs().swap_remove(o),
+            Lacking::Force(c) => self.forces().swap_remove(c),
+        };
         let rms = (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
-        let explained_by = self.explained(&states, &values)?;
+        let explained_by = self.explained(at, &states, &values)?;
         let gain = run.log_likelihood - without;
         let alike = vec![];
         Ok(MissingForce { channel, unit, rms, gain, values, band, explained_by, alike })
     }
 
-    /// The most likely measurement noise and random walk on one channel.
-    fn walking(&self, path: &Path, c: usize) -> Noise {
-        let noise = self.walks(path, c, &NOISES).0;
+    /// The most likely measurement noise and random walk at one place.
+    fn walking(&self, path: &Path, at: Lacking) -> Noise {
+        let noise = self.walks(path, at, &NOISES).0;
         most_likely(path, &noise, &noise.components()).0
     }
 
-    /// The most likely of some walks on one channel, and its log likelihood, all variances by a common
+    /// The most likely of some walks at one place, and its log likelihood, all variances by a common
     /// factor.
-    fn walks(&self, path: &Path, c: usize, noises: &[f64]) -> (Noise, f64) {
-        let scale = path.force_scales()[c];
+    fn walks(&self, path: &Path, at: Lacking, noises: &[f64]) -> (Noise, f64) {
+        let scale = match at {
+            Lacking::Output(o) => self.spread[o],
+            Lacking::Force(c) => path.force_scales()[c],
+        };
         let tried = SIZES.iter().flat_map(|size| {
             noises.iter().map(move |left| {
                 let measurement = self.spread.iter().map(|s| left * s * s + f64::MIN_POSITIVE);
                 let mut noise = self.white(measurement.collect());
-                noise.slow[c] = Slow::walk(size * scale * scale);
+                let walk = Slow::walk(size * scale * scale);
+                match at {
+                    Lacking::Output(o) => noise.wander[o] = walk,
+                    Lacking::Force(c) => noise.slow[c] = walk,
+                }
                 concentrated(path, &noise)
             })
         });
@@ -179,13 +213,21 @@ impl Predictor {
     }
 
     /// The shares of every coordinate in a force, the largest first; `states` are where to look.
-    fn explained(&self, states: &[f64], force: &[f64]) -> Result<Vec<Explained>, LikelihoodError> {
+    fn explained(
+        &self,
+        at: Lacking,
+        states: &[f64],
+        force: &[f64],
+    ) -> Result<Vec<Explained>, LikelihoodError> {
         let plan = &self.model.plan;
         let entries = plan.sources.entries.len();
         let seen = self.seen(states)?;
         let n = force.len();
         let cut = (ENDS * n as f64) as usize;
+        // an output has no law of an output
+        let into_output = matches!(at, Lacking::Output(_));
         let mut found: Vec<Explained> = (0..plan.sources.named)
+            .filter(|&e| !(into_output && matches!(plan.sources.entries[e].1, Origin::Output(_))))
             .filter(|&e| !(0..e).any(|other| plan.rates.same(e, other)))
             .filter_map(|e| {
                 let values = column(&seen, entries, e);

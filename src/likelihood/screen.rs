@@ -108,6 +108,14 @@ impl Predictor {
             let z = column(&path.predicted, ny, o);
             let spot = Spot::OwnPath { input: false };
             found.push(push(Site::Output(o), source, z, spot, self.spread[o], None));
+            // a law that is missing in a balance enters no state, and may have either sign
+            let is_output = |&&e: &&usize| matches!(plan.sources.entries[e].1, Origin::Output(_));
+            let seen = distinct.iter().filter(|e| plan.balances[o] && !is_output(e));
+            for &e in seen {
+                let z = column(&path.seen, entries, e);
+                let spot = Spot::Channel { velocity: plan.is_velocity(e) };
+                found.push(push(Site::Output(o), Some(e), z, spot, self.spread[o], None));
+            }
         }
         let ones = vec![1.0; path.len];
         let offset = |site, scale: f64| Spotted {
@@ -137,9 +145,16 @@ impl Predictor {
     /// What may be the load of a friction in a channel, of distinct entries of the table of sources.
     fn loads(&self, path: &Path, site: Site, distinct: &[usize]) -> Vec<(usize, Vec<f64>)> {
         let plan = &self.model.plan;
-        let Site::Force(c) = site else { return vec![] };
-        let unit = &self.forces()[c].1;
-        let may_be = distinct.iter().filter(|&&e| plan.may_load(e, unit));
+        let unit = match site {
+            Site::Force(c) => self.forces().swap_remove(c).1,
+            Site::Output(o) => self.outputs().swap_remove(o).1,
+            Site::Parameter(_) => return vec![],
+        };
+        let sees = |e: usize| match plan.sources.entries[e].1 {
+            Origin::Output(_) => !matches!(site, Site::Output(_)),
+            _ => true,
+        };
+        let may_be = distinct.iter().filter(|&&e| plan.may_load(e, &unit) && sees(e));
         may_be.map(|&e| (e, column(&path.seen, plan.sources.entries.len(), e))).collect()
     }
 

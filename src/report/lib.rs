@@ -133,7 +133,7 @@ impl<'a> Report<'a> {
         let mut page = Page::default();
         page.element("p", "kicker", &self.title);
         if finding.interrupted {
-            page.element("p", "note", "The search was interrupted: this is what was known.");
+            page.element("p", "note", sentences::INTERRUPTED);
         }
         self.headline(&mut page);
         for index in 0..finding.causes.len() {

@@ -5,6 +5,7 @@
 //! input or an output are passed one after the other, in the order of the model file.
 
 mod arithmetic;
+mod balances;
 mod drift;
 mod engine;
 mod error;

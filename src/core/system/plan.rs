@@ -5,6 +5,7 @@ use std::sync::Arc;
 use crate::effect::{CandidateEffect, EffectCard, Mechanism, Needs};
 use crate::model::{Law, Signals, Sizes};
 
+use super::balances::balances;
 use super::error::SystemError;
 use super::rates::Rates;
 use super::sampling::{Hold, Method};
@@ -58,6 +59,8 @@ pub struct Base {
     pub rates: Rates,
     /// The state that an own coordinate is equal to, where there is one.
     pub own_state: Vec<Option<usize>>,
+    /// Outputs whose equations are balances of their own: a law may be missing in them.
+    pub balances: Vec<bool>,
     /// Whether own channels and coordinates are declared (else: one per state).
     pub declared_channels: bool,
     pub declared_coordinates: bool,
@@ -97,6 +100,7 @@ impl Base {
             own_state,
             sources,
             rates,
+            balances: balances(law),
             substeps: if continuous { substeps } else { 1 },
             method: sampling.integrator.method,
             hold: if continuous { sampling.hold } else { Hold::Zero },

@@ -112,11 +112,7 @@ impl Drawing<'_, '_> {
         for group in &groups {
             let target = group[0].0;
             for &source in sources.iter().filter(|&&source| builder.may_see(target, source)) {
-                let own = group.iter().any(|&(t, _)| {
-                    let origin = base.sources.entries[source].1;
-                    matches!(origin, Origin::Input(_)) && base.targets.entries[t].1 == origin
-                });
-                if !own {
+                if !builder.is_own_path(group, source) {
                     let spot = Spot { target, source: Some(source), own_path: false };
                     spots.push((spot, group[1..].to_vec()));
                 }

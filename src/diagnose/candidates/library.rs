@@ -105,63 +105,6 @@ impl<'a, 'b> Builder<'a, 'b> {
 }
 
 impl Builder<'_, '_> {
-    /// Own channels, inputs, and outputs that are balances of their own: those that push the same way
-    /// together, the preferred one first.
-    pub(crate) fn channels(&self) -> Vec<Vec<(usize, f64)>> {
-        let mut groups: Vec<Vec<(usize, f64)>> = vec![];
-        let mut order: Vec<usize> = (0..self.problem.base.targets.entries.len())
-            .filter(|&e| match self.problem.base.targets.entries[e].1 {
-                Origin::Own(channel) => self.problem.base.may_push(channel),
-                Origin::Output(output) => self.nominal.algebraic.is(output),
-                _ => true,
-            })
-            .collect();
-        order.sort_by_key(|&e| self.preference(e, false));
-        for entry in order {
-            let same = groups.iter_mut().find_map(|group| {
-                self.nominal.parallel(group[0].0, entry).map(|factor| (group, factor))
-            });
-            match same {
-                Some((group, factor)) => group.push((entry, factor)),
-                None => groups.push(vec![(entry, 1.0)]),
-            }
-        }
-        groups
-    }
-
-    pub(crate) fn preference(&self, target: usize, own_path: bool) -> Preference {
-        match self.problem.base.targets.entries[target].1 {
-            Origin::Output(o) if !own_path && self.nominal.algebraic.is(o) => Preference::Balance,
-            Origin::Own(_) if self.problem.base.declared_channels => Preference::DeclaredChannel,
-            Origin::Own(_) => Preference::DefaultChannel,
-            Origin::Input(_) => Preference::Input,
-            _ => Preference::Output,
-        }
-    }
-
-    /// Named sources except time, each value once.
-    pub(crate) fn sources(&self) -> Vec<usize> {
-        let base = &self.problem.base;
-        let mut kept: Vec<usize> = vec![];
-        for entry in 0..base.sources.named - 1 {
-            if !kept.iter().any(|&other| base.rates.same(other, entry)) {
-                kept.push(entry);
-            }
-        }
-        kept
-    }
-
-    /// Whether a law of a source may be missing at a target; an output has no law of an output.
-    pub(crate) fn may_see(&self, target: usize, source: usize) -> bool {
-        let base = &self.problem.base;
-        let into_output = matches!(base.targets.entries[target].1, Origin::Output(_));
-        !(into_output && matches!(base.sources.entries[source].1, Origin::Output(_)))
-    }
-
-    pub(crate) fn time(&self) -> usize {
-        self.problem.base.sources.named - 1
-    }
-
     /// Adds the candidates of one effect at one spot: one per pattern of absent bounds and
     /// per choice.
     #[allow(clippy::too_many_arguments)]

@@ -12,6 +12,7 @@ mod loads;
 pub(crate) mod naming;
 pub(crate) mod network_start;
 pub(crate) mod placement;
+mod places;
 pub(crate) mod probes;
 pub(crate) mod products;
 pub(crate) mod screen;

@@ -112,13 +112,6 @@ impl Builder<'_, '_> {
     ) {
         let base = self.problem.base.clone();
         let target = group[0].0;
-        let input_of_group = |source: usize| {
-            matches!(base.sources.entries[source].1, Origin::Input(_))
-                && group
-                    .iter()
-                    .any(|&(t, _)| base.targets.entries[t].1 == base.sources.entries[source].1)
-        };
-        // an input that only has its own path is no channel for the rest
         let twins = |of: Option<usize>| {
             let of = of.map(|s| base.sources.entries[s].0.name.clone());
             group[1..]
@@ -154,7 +147,7 @@ impl Builder<'_, '_> {
             if !self.may_see(target, source) {
                 continue;
             }
-            if input_of_group(source) {
+            if self.is_own_path(group, source) {
                 // the same as a curve in the input's own path
                 self.also_stands_for(name, target, Some(source), &twins(Some(source)));
                 continue;
@@ -267,7 +260,7 @@ impl Builder<'_, '_> {
         let base = self.problem.base.clone();
         for (target, (_, origin)) in base.targets.entries.iter().enumerate() {
             // a balance has its channel already
-            let wanted = matches!(origin, Origin::Output(o) if !self.nominal.algebraic.is(*o));
+            let wanted = matches!(origin, Origin::Output(o) if !base.balances[*o]);
             if !wanted {
                 continue;
             }

@@ -36,6 +36,14 @@ pub(super) struct Moment {
     pub onset: Onset,
 }
 
+impl Moment {
+    /// Whether its 95 % interval leaves out the beginning of the record: else what begins then may as
+    /// well have been there always.
+    pub fn is_within(&self, record: &Record) -> bool {
+        self.onset.time - 1.96 * self.onset.std_error.unwrap_or(0.0) > record.start
+    }
+}
+
 /// When `after` takes over from `before` in a record of one segment, near a guess; `None` where neither can
 /// be followed.
 pub(super) fn moment(

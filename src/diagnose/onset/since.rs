@@ -67,7 +67,8 @@ impl Diagnosis<'_> {
                 return Ok(None);
             }
             let pair = (self.system, &searched.extended);
-            let Some(moment) = moment(pair, &seen, at)? else { return Ok(None) };
+            let moment = moment(pair, &seen, at)?.filter(|moment| moment.is_within(&seen));
+            let Some(moment) = moment else { return Ok(None) };
             let late = at + (LATER * seen.len() as f64) as usize;
             if moment.sample <= late || watch.stopped() {
                 return Ok(Some(Begun {

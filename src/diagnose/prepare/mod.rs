@@ -1,6 +1,6 @@
 //! What a search is prepared with: records joined, the operating range of the baseline, outliers.
 
-pub(crate) mod algebraic;
+pub(crate) mod direct;
 pub(crate) mod excitation;
 pub(crate) mod input_dependence;
 pub(crate) mod integration_error;

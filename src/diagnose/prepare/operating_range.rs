@@ -6,7 +6,7 @@ use crate::effect::View;
 use crate::fit::problem::{Grain, Model, Part, Problem};
 use crate::model::probe::{Along, Point, slope};
 use crate::model::{Ask, Sizes};
-use crate::prepare::algebraic::Algebraic;
+use crate::prepare::direct::direct;
 use crate::prepare::pushes::Pushes;
 use crate::prepare::regressors::Features;
 use crate::statistics::{deviation, median, rms};
@@ -34,10 +34,8 @@ pub(crate) struct Nominal {
     pub natural: Vec<f64>,
     /// Change of the derivatives (rows) by each own channel and input, at several samples.
     columns: Vec<Vec<f64>>,
-    /// Change of the outputs that are balances of their own by each of these, and by themselves.
+    /// Change of the outputs that are balances of their own by each target.
     direct: Vec<Vec<f64>>,
-    /// Which outputs those are.
-    pub algebraic: Algebraic,
     /// The columns of other parameter values.
     pub pushes: Arc<Pushes>,
     sizes: Sizes,
@@ -77,13 +75,7 @@ impl Nominal {
             })
             .collect();
         let targets = 0..base.targets.entries.len();
-        let algebraic = Algebraic::new(problem.system.model.as_ref(), n, &points);
-        let direct = |(_, origin): &(_, Origin)| match *origin {
-            Origin::Input(i) => algebraic.of_input(i),
-            Origin::Output(o) => algebraic.of_output(o),
-            _ => algebraic.of_state(),
-        };
-        let direct = base.targets.entries.iter().map(direct).collect();
+        let direct = direct(problem.system.model.as_ref(), base, &points);
         let pushes = Pushes::new(problem.system.model.as_ref(), base.clone(), points);
         let columns: Vec<Vec<f64>> = targets.map(|target| pushes.columns(target)).collect();
         let dt = base.sampling_time;
@@ -112,7 +104,6 @@ impl Nominal {
             natural,
             columns,
             direct,
-            algebraic,
             pushes: Arc::new(pushes),
             sizes: n,
             count: known,

@@ -56,11 +56,16 @@ fn ordered(finding: &Finding) -> Vec<&Cause> {
     first.into_iter().chain(rest).collect()
 }
 
+/// What is said of a search that somebody stopped.
+#[doc(hidden)]
+pub const INTERRUPTED: &str =
+    "Interrupted: this is what was known. Probabilities are among what had been tried by then.";
+
 /// Everything that a terminal shows of a finding, line by line.
 pub fn summary(finding: &Finding) -> String {
     let mut lines = vec![];
     if finding.interrupted {
-        lines.push("Interrupted: this is what was known.".to_string());
+        lines.push(INTERRUPTED.to_string());
     }
     lines.push(headline(finding));
     lines.extend(details(finding));

@@ -27,7 +27,7 @@ pub struct Table {
     #[serde(default)]
     pub inputs: Vec<Input>,
     /// What it remembers; empty where outputs follow from the inputs of the same instant.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub states: Vec<State>,
     /// What is measured.
     pub outputs: Vec<Output>,
