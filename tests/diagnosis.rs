@@ -2,6 +2,7 @@
 //!
 //! One binary for all, because linking costs more than compiling.
 
+mod accelerometer;
 mod arm;
 mod clocks;
 mod data_faults;

@@ -157,13 +157,15 @@ fn answers_of_any_tool_are_marked() {
         study["tallies"][kind]["spurious"].clone()
     };
     assert_eq!((spurious(0), spurious(1)), (json!(1.0), json!(0.0)));
-    // a name that no library has is marked as a wrong one, and said
+    // a name that no library or model has is marked as a wrong one, and said
     let misspelt =
-        json!([{ "case": 1, "causes": [cause("coulom_friction", None, "force", json!([]))] }]);
+        json!([{ "case": 1, "causes": [cause("coulom_friction", Some("w"), "forc", json!([]))] }]);
     place.put("misspelt.json", &answers(misspelt));
     let said = place.run("exam mark exam misspelt.json --out misspelt");
     let said = String::from_utf8_lossy(&said.stderr).into_owned();
     assert!(said.contains("did you mean `coulomb_friction`?"), "{said}");
+    assert!(said.contains("`forc` (did you mean `force`?) is no place of its model"), "{said}");
+    assert!(said.contains("`w` is no coordinate of its model"), "{said}");
     assert!(said.contains("3 cases have no answer"), "{said}");
     for (list, says) in [
         (json!([{ "case": 9, "causes": [] }]), "none of the 4 cases"),

@@ -79,3 +79,26 @@ fn initialisers_of_linear_baselines_say_what_to_use_instead() {
     let error = recipe.start(&system(JOINT), &[record(300, 5, 0.0)], 0).unwrap_err();
     assert!(error.hint().unwrap().contains("linearised"), "{error}");
 }
+
+#[test]
+fn an_acceleration_has_what_effects_add_also_where_it_is_trained() {
+    let text = "sampling_time = 0.01\nintegrator = { method = \"rk4\", substeps = 2 }\n[model.equations]\n\
+        inputs = [{ name = \"F\" }]\n\
+        states = [{ name = \"p\", derivative = \"v\" }, { name = \"v\", derivative = \"(F - 40*p - v)/m\" }]\n\
+        outputs = [{ name = \"a\", value = \"(F - 40*p - v)/m\" }, { name = \"y\", value = \"p\" }]\n\
+        parameters = [{ name = \"m\", value = 2.0, fixed = true }]\n\
+        [[effects]]\ninto = \"v\"\nof = \"v\"\neffect.coulomb_friction = { level = -3.0, width = 0.1 }\n";
+    // the factor of a rate may not depend on what is free, and is 1 here
+    let (whole, mut random) = (system(text), Random::new(8));
+    let force: Vec<f64> = (0..400).map(|_| 20.0 * random.normal()).collect();
+    let record = Record::new(0.01).input("F", force).unwrap();
+    let sampled = lacuna::lfr::Sampled::of(&whole, 0.01).unwrap().into_system();
+    let run = |system| Simulation::of(system, &record, Init::Samples(0)).unwrap().outputs;
+    let (a, b) = (run(&whole), run(&sampled));
+    let off = |i: usize| a[i].1.iter().zip(&b[i].1).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    assert!(off(0) < 1e-9 && off(1) < 1e-9, "{} {}", off(0), off(1));
+    // the friction is in the acceleration, not only in what follows from it
+    let bare = run(&system(text.split("[[effects]]").next().unwrap()));
+    let first = |run: &[(String, Vec<f64>)]| run[0].1[1];
+    assert!((first(&a) - first(&bare)).abs() > 0.1, "{} {}", first(&a), first(&bare));
+}

@@ -55,7 +55,7 @@ class Answers:
     def __init__(
         self,
         declared: Mapping[str, Sequence[Dict[str, Any]]],
-        derivative: Callable[..., Any],
+        derivative: Optional[Callable[..., Any]],
         output: Optional[Callable[..., Any]],
         coordinates: Optional[Callable[..., Any]],
     ) -> None:
@@ -70,6 +70,8 @@ class Answers:
         self.rows["coordinates"] = len(declared["coordinates"]) or self.states
         self.functions = {"derivative": derivative, "output": output, "coordinates": coordinates}
         self.takes = {which: _takes(which, f) for which, f in self.functions.items() if f is not None}
+        if derivative is None and (self.states or self.has_channels):
+            raise CallError("states or channels are declared, and no function gives the derivatives")
         if self.has_channels and "w" not in self.takes["derivative"]:
             raise CallError("channels are declared, and the function takes no argument `w` for them")
         if output is None and self.outputs > self.states:

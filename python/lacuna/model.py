@@ -55,9 +55,9 @@ class Model:
     @classmethod
     def from_function(
         cls,
-        derivative: Callable[..., Any],
+        derivative: Optional[Callable[..., Any]] = None,
         *,
-        states: Any,
+        states: Any = (),
         inputs: Any,
         outputs: Any,
         parameters: Any = (),
@@ -79,7 +79,8 @@ class Model:
             state. Arguments are named tuples, ``x.v`` or ``x[1]``; further arguments called ``w``
             (what enters the ``channels``, one value each, 0 in the model as it is) and ``t`` (time
             in s) are given to a function that takes them. It is called with arrays of shape
-            ``(n,)`` where it understands them (numpy functions), else with numbers.
+            ``(n,)`` where it understands them (numpy functions), else with numbers. Left out
+            with the states, where ``output`` is all there is (inverse dynamics).
         states, inputs, outputs, channels, coordinates
             Names, or a dictionary of names to units or to ``{"unit": .., "quantity": ..}``; a state
             may have ``initial``. Dry friction and its kin are looked for on coordinates of the

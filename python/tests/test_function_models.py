@@ -121,3 +121,27 @@ def test_a_function_must_take_x_u_and_theta():
         made(lambda x, u: [0.0, 0.0], channels=())
     with pytest.raises(lacuna.CallError, match="no argument `w`"):
         made(lambda x, u, theta: [0.0, 0.0])
+
+
+def test_one_without_states_is_its_output_alone():
+    t = 0.01 * np.arange(2000)
+    q, qd, qdd = np.zeros((3, 2000))
+    for i in range(1, 5):
+        a, w = 1.5 / i**2, 0.8 * i**2
+        q += a * np.sin(w * t + i)
+        qd += a * w * np.cos(w * t + i)
+        qdd -= a * w * w * np.sin(w * t + i)
+    noise = np.random.default_rng(3).normal(0, 0.05, 2000)
+    tau = 0.5 * qdd + 3.0 * np.sin(q) + 0.4 * np.tanh(qd / 0.02) + noise
+    model = lacuna.Model.from_function(
+        inputs={"q": "rad", "qd": {"unit": "rad/s", "quantity": "velocity"}, "qdd": "rad/s^2"},
+        outputs={"tau": "N m"},
+        parameters={"J": 0.5, "G": 3.0},
+        output=lambda x, u, theta: [theta.J * u.qdd + theta.G * np.sin(u.q)],
+    )
+    record = lacuna.Record({"q": q, "qd": qd, "qdd": qdd, "tau": tau}, sampling_time=0.01)
+    finding = lacuna.diagnose(model, record)
+    cause = finding.causes[0]
+    assert (cause.effect, cause.into, cause.of) == ("coulomb_friction", "tau", "qd")
+    with pytest.raises(lacuna.CallError, match="no function gives the derivatives"):
+        lacuna.Model.from_function(states=["x"], inputs=["u"], outputs=["y"])

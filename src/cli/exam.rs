@@ -9,10 +9,10 @@ use super::outputs::{self, cannot_write};
 use super::study::exam::{configured, finish};
 use super::{input, provenance};
 use lacuna::diagnose::{Diagnosis, Memory, Watch};
-use lacuna::fault::nearest;
 use lacuna::file::{Document, read_regular, save_with, write_text};
-use lacuna::register::registered;
-use lacuna::study::{Answer, Answers, Calibration, CaseFile, ExamResult, Marked, Written};
+use lacuna::study::{
+    Answer, Answers, Calibration, CaseFile, ExamResult, Marked, UnknownName, Written,
+};
 
 /// What marking writes.
 const MARKS: [&str; 4] = ["study.json", "cases.csv", "seconds.csv", "report.html"];
@@ -66,12 +66,12 @@ fn said_of(marked: &Marked, look: &Console) {
             "{open} cases have no answer: marked as if nothing had been found there."
         )),
     }
-    for (case, effect) in &marked.unknown {
-        let known = registered().into_iter().map(|card| card.name);
-        let hint = nearest(effect, known)
-            .map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"));
+    for UnknownName { case, role, name, near } in &marked.unknown {
+        let near = near.as_ref();
+        let hint = near.map_or_else(String::new, |near| format!(" (did you mean `{near}`?)"));
+        let of = if *role == "effect" { "the library" } else { "its model" };
         look.say(&format!(
-            "case {case}: `{effect}`{hint} is no effect of the library: it counts as a wrong name."
+            "case {case}: `{name}`{hint} is no {role} of {of}: it counts as a wrong name."
         ));
     }
 }

@@ -21,7 +21,7 @@ use super::predictor::Predictor;
 use super::replay::Pass;
 use crate::data::Record;
 use crate::effect::Mechanism;
-use crate::evaluate::{Metrics, Simulation};
+use crate::evaluate::{EvaluateError, Metrics, Simulation};
 use crate::system::{System, Transition};
 
 impl Predictor {
@@ -66,6 +66,15 @@ impl Predictor {
         horizon: usize,
     ) -> Result<Simulation, LikelihoodError> {
         let predictor = Self::new(system, std::slice::from_ref(record))?;
+        // a prediction and what it is compared with are in one stretch of the record
+        let longest = predictor.drive.segments.iter().map(ExactSizeIterator::len).max();
+        if longest.is_none_or(|longest| horizon >= longest) {
+            return Err(LikelihoodError::Evaluate(EvaluateError::TooShort {
+                record: record.source.clone(),
+                samples: longest.unwrap_or(0),
+                needed: horizon.saturating_add(1),
+            }));
+        }
         let ahead = match Self::own_gain(system) {
             Some(gain) => predictor.ahead_by(&gain, horizon)?,
             None => {

@@ -139,7 +139,7 @@ impl Predictor {
 
     /// Where something may be missing: distinct forces, and measured outputs that are balances.
     fn lacking(&self, path: &Path) -> Vec<Lacking> {
-        let is = |&o: &usize| self.model.plan.balances[o] && self.spread[o] > 0.0;
+        let is = |&o: &usize| self.model.plan.output_equations.balances[o] && self.spread[o] > 0.0;
         let outputs = (0..path.outputs).filter(is).map(Lacking::Output);
         self.distinct(path).into_iter().map(Lacking::Force).chain(outputs).collect()
     }

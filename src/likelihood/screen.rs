@@ -110,7 +110,8 @@ impl Predictor {
             found.push(push(Site::Output(o), source, z, spot, self.spread[o], None));
             // a law that is missing in a balance enters no state, and may have either sign
             let is_output = |&&e: &&usize| matches!(plan.sources.entries[e].1, Origin::Output(_));
-            let seen = distinct.iter().filter(|e| plan.balances[o] && !is_output(e));
+            let seen =
+                distinct.iter().filter(|e| plan.output_equations.balances[o] && !is_output(e));
             for &e in seen {
                 let z = column(&path.seen, entries, e);
                 let spot = Spot::Channel { velocity: plan.is_velocity(e) };

@@ -38,7 +38,7 @@ pub use self::{
     exam::{
         Answer, Answered, Answers, Calibration, Case, CaseFile, CaseTruth, Concealed, Conditions,
         ExamResult, Hidden, Hit, Kind, Machine, Marked, Marks, Named, Noise, Number, Outside,
-        Tally, Written,
+        Tally, UnknownName, Written,
     },
     figures::StudyReport,
     generate::Generated,

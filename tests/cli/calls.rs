@@ -60,12 +60,20 @@ fn calls_that_cannot_be_understood() {
 }
 
 #[test]
-fn more_samples_for_the_start_than_there_are() {
+fn more_samples_for_the_start_or_ahead_than_there_are() {
     let folder = scratch("init");
     std::fs::write(folder.join("m.toml"), MODEL).unwrap();
     record(&folder, "d.csv", "m.toml", 60, 0.0);
     let at = At { file: "d.csv", ..NOWHERE };
-    let line = "simulate --model m.toml --data d.csv --init 60";
-    refused(&folder, line, "input", at, &["60 samples", "61"]);
-    run(&folder, "simulate --model m.toml --data d.csv --init 59").exits(0);
+    let call = |more: &str| format!("simulate --model m.toml --data d.csv {more}");
+    for (more, needed) in [
+        ("--init 60", "61"),
+        ("--init 900", "901"),
+        ("--horizon 60", "61"),
+        ("--horizon 900", "901"),
+    ] {
+        refused(&folder, &call(more), "input", at, &["60 samples", needed]);
+    }
+    run(&folder, &call("--init 59")).exits(0);
+    run(&folder, &call("--horizon 59")).exits(0);
 }

@@ -116,7 +116,9 @@ impl Explain for EvaluateError {
                     None => format!("rename a column or the model's signal; there are: {list}"),
                 }
             }
-            Self::TooShort { needed, .. } => format!("record at least {needed} samples"),
+            Self::TooShort { needed, .. } => format!(
+                "record at least {needed} samples, or let fewer of them serve the start or the horizon"
+            ),
             Self::Step { record_step, .. } => {
                 format!("resample the record, or discretise the model for {record_step} s")
             }

@@ -49,10 +49,11 @@ impl Simulation {
         let count = run.init_samples(init);
         if count >= record.len() {
             // nothing would be left to compare
+            let wanted = if let Init::Samples(wanted) = init { wanted } else { count };
             return Err(EvaluateError::TooShort {
                 record: record.source.clone(),
                 samples: record.len(),
-                needed: count + 1,
+                needed: wanted.saturating_add(1),
             });
         }
         let starts = run.starts(count);

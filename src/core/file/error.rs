@@ -249,3 +249,20 @@ fn complaint_hint(complaint: &Complaint) -> Option<String> {
     };
     Some(text.into())
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::fault::Explain;
+    use crate::file::{Format, parse};
+
+    #[test]
+    fn a_misspelt_choice_within_a_model_is_answered_with_the_right_one() {
+        let text = "sampling_time = 0.1\n[model.lti]\ntime = \"continous\"\nA = [[-1.0]]\n\
+                    B = [[1.0]]\nC = [[1.0]]\n";
+        let error = parse(text, "model.toml", Format::Toml).unwrap_err();
+        assert_eq!(error.to_string().matches("continous").count(), 1, "{error}");
+        let hint = error.hint().unwrap();
+        assert_eq!(hint, "did you mean `continuous`? There are: discrete, continuous");
+        assert_eq!((error.place().line, error.place().column), (Some(3), Some(8)));
+    }
+}

@@ -12,7 +12,7 @@ use std::slice::Iter;
 
 use serde::Deserialize;
 use serde::de::value::{BorrowedStrDeserializer, MapAccessDeserializer};
-use serde::de::{DeserializeSeed, Deserializer, Expected, MapAccess, SeqAccess, Visitor};
+use serde::de::{self, DeserializeSeed, Deserializer, Expected, MapAccess, SeqAccess, Visitor};
 use serde::forward_to_deserialize_any;
 
 use super::complaint::Complaint;
@@ -166,12 +166,17 @@ impl<'de> Deserializer<'de> for Reader<'_, 'de> {
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _name: &'static str,
-        _variants: &'static [&'static str],
+        variants: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Complaint> {
         let value = match &self.node.value {
             Value::Text(text) => {
-                visitor.visit_enum(BorrowedStrDeserializer::<Complaint>::new(text))
+                let read = visitor.visit_enum(BorrowedStrDeserializer::<Complaint>::new(text));
+                // a boxed model or effect keeps the words of an error, and not the names there are
+                read.map_err(|error| match variants.contains(&text.as_str()) {
+                    true => error,
+                    false => de::Error::unknown_variant(text, variants),
+                })
             }
             Value::Table(entries) if !entries.is_empty() => {
                 if let [first, second, ..] = entries.as_slice() {

@@ -1,5 +1,6 @@
 //! The simulation: groups of lanes, each with its own effects, through one law.
 
+mod rates;
 mod recorded;
 mod tracks;
 mod transition;
@@ -306,6 +307,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
     /// Outputs now, after everything that sits in their paths.
     fn output(&mut self, h: f64) {
         self.ask(Ask::Output, 0, self.time);
+        self.add_to_rates();
         let ny = self.base.sizes.y;
         for group in &mut self.groups {
             let packs = group.places();

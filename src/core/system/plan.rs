@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::effect::{CandidateEffect, EffectCard, Mechanism, Needs};
 use crate::model::{Law, Signals, Sizes};
 
-use super::balances::balances;
+use super::balances::OutputEquations;
 use super::error::SystemError;
 use super::rates::Rates;
 use super::sampling::{Hold, Method};
@@ -59,8 +59,8 @@ pub struct Base {
     pub rates: Rates,
     /// The state that an own coordinate is equal to, where there is one.
     pub own_state: Vec<Option<usize>>,
-    /// Outputs whose equations are balances of their own: a law may be missing in them.
-    pub balances: Vec<bool>,
+    /// Outputs that are balances of their own, in which a law may be missing, and those that are rates.
+    pub output_equations: OutputEquations,
     /// Whether own channels and coordinates are declared (else: one per state).
     pub declared_channels: bool,
     pub declared_coordinates: bool,
@@ -100,7 +100,7 @@ impl Base {
             own_state,
             sources,
             rates,
-            balances: balances(law),
+            output_equations: OutputEquations::of(law),
             substeps: if continuous { substeps } else { 1 },
             method: sampling.integrator.method,
             hold: if continuous { sampling.hold } else { Hold::Zero },

@@ -260,7 +260,7 @@ impl Builder<'_, '_> {
         let base = self.problem.base.clone();
         for (target, (_, origin)) in base.targets.entries.iter().enumerate() {
             // a balance has its channel already
-            let wanted = matches!(origin, Origin::Output(o) if !base.balances[*o]);
+            let wanted = matches!(origin, Origin::Output(o) if !base.output_equations.balances[*o]);
             if !wanted {
                 continue;
             }

@@ -13,7 +13,7 @@ impl Builder<'_, '_> {
         let mut order: Vec<usize> = (0..self.problem.base.targets.entries.len())
             .filter(|&e| match self.problem.base.targets.entries[e].1 {
                 Origin::Own(channel) => self.problem.base.may_push(channel),
-                Origin::Output(output) => self.problem.base.balances[output],
+                Origin::Output(output) => self.problem.base.output_equations.balances[output],
                 _ => true,
             })
             .collect();
@@ -32,7 +32,9 @@ impl Builder<'_, '_> {
 
     pub(crate) fn preference(&self, target: usize, own_path: bool) -> Preference {
         match self.problem.base.targets.entries[target].1 {
-            Origin::Output(o) if !own_path && self.problem.base.balances[o] => Preference::Balance,
+            Origin::Output(o) if !own_path && self.problem.base.output_equations.balances[o] => {
+                Preference::Balance
+            }
             Origin::Own(_) if self.problem.base.declared_channels => Preference::DeclaredChannel,
             Origin::Own(_) => Preference::DefaultChannel,
             Origin::Input(_) => Preference::Input,

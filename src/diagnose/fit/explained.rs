@@ -49,7 +49,9 @@ impl Place {
         is_path: bool,
     ) -> Option<Self> {
         let base = &problem.base;
+        let read = !base.output_equations.rates.is_empty();
         match base.targets.entries[target].1 {
+            Origin::Own(_) | Origin::Input(_) if read => None,
             Origin::Own(channel) => Some(Self::Force(channel)),
             Origin::Input(i) if is_path && nominal.is_direct(problem, i) => None,
             Origin::Input(i) => Some(Self::Force(base.sizes.w + i)),

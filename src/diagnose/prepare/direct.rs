@@ -1,6 +1,6 @@
 //! What enters a balance of the outputs at once: entries of D around points of the record.
 //!
-//! A balance is an output equation of its own, see [`balances`](crate::system::Base::balances). Two places
+//! A balance is an output equation of its own, see `system::balances`. Two places
 //! whose columns of (G; D) are parallel are one for everything that is measured.
 
 use crate::model::probe::{Along, Point, slope, unit};
@@ -9,7 +9,7 @@ use crate::system::{Base, Origin};
 
 /// Per entry of the table of targets the slopes of all balances at every point; 0 for other outputs.
 pub(crate) fn direct(model: &dyn StateSpaceModel, base: &Base, points: &[Point]) -> Vec<Vec<f64>> {
-    let (sizes, is) = (base.sizes, &base.balances);
+    let (sizes, is) = (base.sizes, &base.output_equations.balances);
     let own = |o: usize, slope: f64| if is[o] { slope } else { 0.0 };
     let at = |origin: Origin, point: &Point| -> Vec<f64> {
         match origin {

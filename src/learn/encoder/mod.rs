@@ -61,7 +61,6 @@ pub use initialise::{
 pub use linear::LinearEncoder;
 pub use resnet::ResNetEncoder;
 pub use scaling::Scaling;
-pub use stateless::StatelessEncoder;
 pub use window::Window;
 
 // machinery that sibling crates and the program share; it may change at any time
@@ -74,6 +73,7 @@ pub use self::{
     sampled::SampledLinear,
     scaling::Spread,
     started::{Started, StateError},
+    stateless::StatelessEncoder,
 };
 
 use crate::network::ResNet;

@@ -6,11 +6,12 @@ use std::path::{Component, Path};
 use super::answer::FORM;
 use super::folder::{CASES, EXAM, TRUTH, Written, sealed};
 use super::marks::removed;
+use super::unknown::UnknownName;
 use super::{Answer, Answers, CaseTruth, ExamResult, Marks};
 use crate::StudyError;
 use crate::data::{Step, Table, Want};
 use crate::file::{load, read_regular};
-use crate::register::{Card, registered};
+use crate::register::registered;
 
 /// What to try with an exam that is not whole.
 const AGAIN: &str = "write the exam again with `lacuna exam write`";
@@ -29,9 +30,9 @@ pub struct Marked {
     pub result: ExamResult,
     /// Cases without an answer, marked as if nothing had been found.
     pub unanswered: usize,
-    /// Effects that answers name and that no plug-in registers, with their case: they count as names of
-    /// something that was not hidden.
-    pub unknown: Vec<(usize, String)>,
+    /// Names in answers that their cases do not know: they count as names of something that was not
+    /// hidden.
+    pub unknown: Vec<UnknownName>,
 }
 
 impl Written {
@@ -81,8 +82,16 @@ impl Written {
                 seconds: 0.0,
             };
             let answer = given.remove(&seal.case);
-            let share = match &answer {
-                Some((Answer { extended_model: Some(model), .. }, stored)) => {
+            let baseline = match &answer {
+                Some((answer, _)) => {
+                    let baseline = load(&folder.join(CASES).join(&key).join("model.toml"))?;
+                    unknown.extend(super::unknown::unknown(answer, &known, &baseline));
+                    Some(baseline)
+                }
+                None => None,
+            };
+            let share = match (&answer, &baseline) {
+                (Some((Answer { extended_model: Some(model), .. }, stored)), Some(baseline)) => {
                     // answers may be a stranger's: nothing but what was handed in is opened
                     let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
                     if !Path::new(model).components().all(inside) {
@@ -94,27 +103,16 @@ impl Written {
                         return Err(StudyError::merge(answers, reason).advising(FORM));
                     }
                     let extended = load(&stored.join(model))?;
-                    let baseline = load(&folder.join(CASES).join(&key).join("model.toml"))?;
-                    let third = third(&truth_folder.join("third.csv"), &baseline)?;
-                    Some(removed(&extended, &baseline, &third)?)
+                    let third = third(&truth_folder.join("third.csv"), baseline)?;
+                    Some(removed(&extended, baseline, &third)?)
                 }
                 _ => None,
             };
             let answer = answer.map_or_else(silent, |(answer, _)| answer);
             marks.push(Marks::of(&truth, &answer, share));
-            unknown.extend(unregistered(&answer, &known).map(|effect| (seal.case, effect)));
         }
         Ok(Marked { result: ExamResult::new(marks)?, unanswered, unknown })
     }
-}
-
-/// Effects of an answer that none of these cards registers.
-fn unregistered(answer: &Answer, known: &[&Card]) -> impl Iterator<Item = String> {
-    let parts = answer.causes.iter().flat_map(|cause| &cause.parts).map(|part| &part.effect);
-    let others = answer.causes.iter().flat_map(|cause| &cause.indistinguishable);
-    let named = answer.causes.iter().map(|cause| &cause.effect).chain(parts);
-    let named = named.chain(others.map(|other| &other.effect));
-    named.filter(|effect| known.iter().all(|card| card.name != **effect)).cloned()
 }
 
 /// The record without noise on which gains are measured.

@@ -15,6 +15,7 @@ mod result;
 mod sheet;
 mod tally;
 mod truth;
+mod unknown;
 mod work;
 
 use std::collections::BTreeMap;
@@ -33,6 +34,7 @@ pub use marks::{Hit, Marks};
 pub use result::ExamResult;
 pub use tally::Tally;
 pub use truth::{CaseTruth, Hidden};
+pub use unknown::UnknownName;
 
 use super::StudyError;
 use super::generate::fits;

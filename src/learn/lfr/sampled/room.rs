@@ -7,7 +7,7 @@ use crate::system::{EffectNumber, Method, Origin, Slot, Way};
 use super::law::split;
 use super::made::Made;
 use super::path;
-use super::sums::{along, ramp, rk4};
+use super::sums::{along, enters, ramp, rk4};
 
 /// The state of one block of packs within a sample.
 pub(super) struct Room<'a, R> {
@@ -155,6 +155,7 @@ impl<'a, R: EffectNumber> Room<'a, R> {
         let mut y = std::mem::take(&mut self.y);
         self.law
             .answer(Ask::Output, R::call(&self.block(&self.x, &self.u[0], &none, time), &mut y));
+        self.add_to_rates(&none, time, later, &mut y);
         let (x, s, u) = (self.x.clone(), self.s.clone(), self.u[0].clone());
         self.effects(&x, &s, &u, time, |_, _, output| output, None);
         for (number, slot) in made.plan.slots.iter().enumerate() {
@@ -174,6 +175,28 @@ impl<'a, R: EffectNumber> Room<'a, R> {
             }
         }
         self.y = y;
+    }
+
+    /// Adds what effects add to the rates of states to the outputs that read them.
+    fn add_to_rates(&mut self, none: &[R], time: R, later: f64, y: &mut [R]) {
+        let n = self.made.plan.sizes;
+        let rates = &self.made.plan.output_equations.rates;
+        let inside = |slot: &Slot| enters(self.made, slot).0;
+        if rates.is_empty() || !self.made.plan.slots.iter().any(inside) {
+            return;
+        }
+        self.stage(0, 0, later);
+        let mut without = vec![R::constant(0.0); self.packs * n.x];
+        let block = self.block(&self.x, &self.u[0], none, time);
+        self.law.answer(Ask::Derivative, R::call(&block, &mut without));
+        for pack in 0..self.packs {
+            for (output, parts) in rates {
+                for &(state, factor) in parts {
+                    let at = pack * n.x + state;
+                    y[pack * n.y + output] += (self.k[0][at] - without[at]) * factor;
+                }
+            }
+        }
     }
 
     /// Rates of all states at a trial state: stage `i`, with the inputs at `slot`.

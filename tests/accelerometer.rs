@@ -1,0 +1,92 @@
+//! Records of an accelerometer: what acts on the mass is read by the sensor at once.
+//!
+//! The records are made by Runge-Kutta steps of their own, not by the program's engine.
+
+use lacuna::data::{Record, noise};
+use lacuna::diagnose::{Finding, Verdict};
+
+use super::arm;
+
+/// A mass on a spring, of which the acceleration is measured.
+const MASS: &str = r#"
+sampling_time = 0.01
+integrator = { method = "rk4", substeps = 4 }
+[model.equations]
+inputs  = [{ name = "F", unit = "N" }]
+states  = [
+  { name = "p", unit = "m",   derivative = "v" },
+  { name = "v", unit = "m/s", derivative = "(F - k*p - c*v)/m" },
+]
+outputs = [{ name = "a", unit = "m/s^2", value = "(F - k*p - c*v)/m" }]
+parameters = [
+  { name = "m", value = 1.0,   unit = "kg", min = 0.0 },
+  { name = "k", value = 100.0, unit = "N/m", min = 0.0 },
+  { name = "c", value = 0.8,   unit = "N s/m", min = 0.0 },
+]
+channels    = [{ name = "on_mass", unit = "N", into = [{ state = "v", gain = "1/m" }] }]
+coordinates = [
+  { name = "travel", unit = "m",   value = "p", quantity = "position" },
+  { name = "speed",  unit = "m/s", value = "v", quantity = "velocity" },
+]
+"#;
+
+/// A record with a further force on the mass, and 0.05 m/s^2 of noise.
+fn record(seed: u64, force: impl Fn(f64, f64) -> f64) -> Record {
+    const N: usize = 4000;
+    let h = 0.01 / 20.0;
+    let (drawn, error) =
+        (noise::white(N, 12.0, seed).unwrap(), noise::white(N, 0.05, seed + 1).unwrap());
+    let ([mut first, mut f], [mut p, mut v]) = ([0.0, 0.0], [0.0, 0.0]);
+    let (mut input, mut read) = (vec![], vec![]);
+    for (e, error) in drawn.iter().zip(&error) {
+        first += 0.25 * (e - first);
+        f += 0.4 * (first - f);
+        let rate = |p: f64, v: f64| [v, f - 100.0 * p - 0.8 * v + force(p, v)];
+        input.push(f);
+        read.push(rate(p, v)[1] + error);
+        for _ in 0..20 {
+            let k1 = rate(p, v);
+            let k2 = rate(p + h / 2.0 * k1[0], v + h / 2.0 * k1[1]);
+            let k3 = rate(p + h / 2.0 * k2[0], v + h / 2.0 * k2[1]);
+            let k4 = rate(p + h * k3[0], v + h * k3[1]);
+            p += h / 6.0 * (k1[0] + 2.0 * k2[0] + 2.0 * k3[0] + k4[0]);
+            v += h / 6.0 * (k1[1] + 2.0 * k2[1] + 2.0 * k3[1] + k4[1]);
+        }
+    }
+    Record::new(0.01).input("F", input).unwrap().output("a", read).unwrap()
+}
+
+fn diagnosed(record: &Record) -> Finding {
+    let finding = arm::diagnosed(MASS, record);
+    println!("{}", lacuna::report::sentences::summary(&finding));
+    finding
+}
+
+/// The first cause and how far the first of its values is from the truth, in standard errors; what is left
+/// over what was not the sensor's.
+fn named(finding: &Finding, truth: f64) -> (&str, &str, bool) {
+    let cause = &finding.causes[0];
+    let own = &cause.parameters[0];
+    let near = (own.value - truth).abs() < 4.0 * own.std_error.unwrap();
+    let left = finding.after.test["a"].rmse;
+    assert!(left < 0.055, "{left}");
+    (&cause.effect, cause.of.as_deref().unwrap(), near)
+}
+
+#[test]
+fn dry_friction_is_named_by_an_accelerometer() {
+    let finding = diagnosed(&record(1, |_, v| -0.6 * (v / 0.02).tanh()));
+    assert_eq!(named(&finding, -0.6), ("coulomb_friction", "speed", true));
+}
+
+#[test]
+fn a_hardening_spring_is_named_by_an_accelerometer() {
+    let finding = diagnosed(&record(3, |p, _| -1500.0 * p.powi(3)));
+    assert_eq!(named(&finding, -1500.0), ("cubic", "travel", true));
+}
+
+#[test]
+fn nothing_is_named_where_nothing_is() {
+    let finding = diagnosed(&record(5, |_, _| 0.0));
+    assert_eq!(finding.verdict, Verdict::NothingFound);
+}
