@@ -6,7 +6,7 @@
 //!
 //! Robots are often identified so: angle, speed and acceleration are inputs, the motor's torque is the
 //! output (Spong, Hutchinson and Vidyasagar, "Robot Modeling and Control", 2006, section 7.3). The model
-//! is one equation, `tau = J*qdd + G*sin(q)`; the joint also has friction.
+//! is one equation, `tau = J*qdd + G*sin(q)` (`examples/joint.toml`); the joint also has friction.
 
 use std::f64::consts::TAU;
 
@@ -14,20 +14,7 @@ use lacuna::data::{Record, noise};
 use lacuna::diagnose::Diagnosis;
 use lacuna::file::{self, Format};
 
-const MODEL: &str = r#"
-sampling_time = 0.01
-[model.equations]
-inputs = [
-  { name = "q",   unit = "rad",     quantity = "position" },
-  { name = "qd",  unit = "rad/s",   quantity = "velocity" },
-  { name = "qdd", unit = "rad/s^2" },
-]
-outputs = [{ name = "tau", unit = "N m", value = "J*qdd + G*sin(q)" }]
-parameters = [
-  { name = "J", value = 0.5, unit = "kg m^2", min = 0.0 },
-  { name = "G", value = 3.0, unit = "N m" },
-]
-"#;
+const MODEL: &str = include_str!("joint.toml");
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let model = file::parse(MODEL, "joint.toml", Format::Toml)?;

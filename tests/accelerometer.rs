@@ -6,6 +6,7 @@ use lacuna::data::{Record, noise};
 use lacuna::diagnose::{Finding, Verdict};
 
 use super::arm;
+use super::hard_plants::later;
 
 /// A mass on a spring, of which the acceleration is measured.
 const MASS: &str = r#"
@@ -33,25 +34,17 @@ coordinates = [
 /// A record with a further force on the mass, and 0.05 m/s^2 of noise.
 fn record(seed: u64, force: impl Fn(f64, f64) -> f64) -> Record {
     const N: usize = 4000;
-    let h = 0.01 / 20.0;
     let (drawn, error) =
         (noise::white(N, 12.0, seed).unwrap(), noise::white(N, 0.05, seed + 1).unwrap());
-    let ([mut first, mut f], [mut p, mut v]) = ([0.0, 0.0], [0.0, 0.0]);
+    let ([mut first, mut f], mut x) = ([0.0, 0.0], [0.0, 0.0]);
     let (mut input, mut read) = (vec![], vec![]);
     for (e, error) in drawn.iter().zip(&error) {
         first += 0.25 * (e - first);
         f += 0.4 * (first - f);
-        let rate = |p: f64, v: f64| [v, f - 100.0 * p - 0.8 * v + force(p, v)];
+        let acceleration = |[p, v]: [f64; 2]| f - 100.0 * p - 0.8 * v + force(p, v);
         input.push(f);
-        read.push(rate(p, v)[1] + error);
-        for _ in 0..20 {
-            let k1 = rate(p, v);
-            let k2 = rate(p + h / 2.0 * k1[0], v + h / 2.0 * k1[1]);
-            let k3 = rate(p + h / 2.0 * k2[0], v + h / 2.0 * k2[1]);
-            let k4 = rate(p + h * k3[0], v + h * k3[1]);
-            p += h / 6.0 * (k1[0] + 2.0 * k2[0] + 2.0 * k3[0] + k4[0]);
-            v += h / 6.0 * (k1[1] + 2.0 * k2[1] + 2.0 * k3[1] + k4[1]);
-        }
+        read.push(acceleration(x) + error);
+        x = later(x, 0.01, acceleration);
     }
     Record::new(0.01).input("F", input).unwrap().output("a", read).unwrap()
 }

@@ -52,7 +52,7 @@ fn noise(seed: u64) -> impl FnMut() -> f64 {
 }
 
 /// A place and its rate, some time later, in 20 steps.
-fn later(mut x: [f64; 2], time: f64, acceleration: impl Fn([f64; 2]) -> f64) -> [f64; 2] {
+pub fn later(mut x: [f64; 2], time: f64, acceleration: impl Fn([f64; 2]) -> f64) -> [f64; 2] {
     let h = time / 20.0;
     let rate = |x: [f64; 2]| [x[1], acceleration(x)];
     let on = |x: [f64; 2], by: f64, k: [f64; 2]| [x[0] + by * k[0], x[1] + by * k[1]];

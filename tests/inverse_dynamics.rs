@@ -151,20 +151,7 @@ fn nothing_is_found_where_nothing_is() {
 }
 
 /// One joint, whose speed is the rate of its angle by their quantities and units.
-const JOINT: &str = r#"
-sampling_time = 0.01
-[model.equations]
-inputs = [
-  { name = "q",   unit = "rad",     quantity = "position" },
-  { name = "qd",  unit = "rad/s",   quantity = "velocity" },
-  { name = "qdd", unit = "rad/s^2" },
-]
-outputs = [{ name = "tau", unit = "N m", value = "J*qdd + G*sin(q)" }]
-parameters = [
-  { name = "J", value = 0.5, unit = "kg m^2", min = 0.0 },
-  { name = "G", value = 3.0, unit = "N m" },
-]
-"#;
+const JOINT: &str = include_str!("../examples/joint.toml");
 
 #[test]
 fn friction_with_memory_is_told_from_dry_friction() {

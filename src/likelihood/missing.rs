@@ -17,7 +17,7 @@ use super::path::Path;
 use super::predictor::{Predictor, column, starts};
 use super::replay::Pass;
 use super::share::share;
-use crate::system::{Origin, Transition};
+use crate::system::Transition;
 
 /// Sizes that the walk is begun with, in units of the channel's force scale, and the measurement
 /// noise in units of the outputs' spreads.
@@ -227,7 +227,7 @@ impl Predictor {
         // an output has no law of an output
         let into_output = matches!(at, Lacking::Output(_));
         let mut found: Vec<Explained> = (0..plan.sources.named)
-            .filter(|&e| !(into_output && matches!(plan.sources.entries[e].1, Origin::Output(_))))
+            .filter(|&e| !(into_output && plan.sources.is_output(e)))
             .filter(|&e| !(0..e).any(|other| plan.rates.same(e, other)))
             .filter_map(|e| {
                 let values = column(&seen, entries, e);

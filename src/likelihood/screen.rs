@@ -109,10 +109,8 @@ impl Predictor {
             let spot = Spot::OwnPath { input: false };
             found.push(push(Site::Output(o), source, z, spot, self.spread[o], None));
             // a law that is missing in a balance enters no state, and may have either sign
-            let is_output = |&&e: &&usize| matches!(plan.sources.entries[e].1, Origin::Output(_));
-            let seen =
-                distinct.iter().filter(|e| plan.output_equations.balances[o] && !is_output(e));
-            for &e in seen {
+            let balance = plan.output_equations.balances[o];
+            for &e in distinct.iter().filter(|&&e| balance && !plan.sources.is_output(e)) {
                 let z = column(&path.seen, entries, e);
                 let spot = Spot::Channel { velocity: plan.is_velocity(e) };
                 found.push(push(Site::Output(o), Some(e), z, spot, self.spread[o], None));
@@ -151,10 +149,8 @@ impl Predictor {
             Site::Output(o) => self.outputs().swap_remove(o).1,
             Site::Parameter(_) => return vec![],
         };
-        let sees = |e: usize| match plan.sources.entries[e].1 {
-            Origin::Output(_) => !matches!(site, Site::Output(_)),
-            _ => true,
-        };
+        let into_output = matches!(site, Site::Output(_));
+        let sees = |e: usize| !(into_output && plan.sources.is_output(e));
         let may_be = distinct.iter().filter(|&&e| plan.may_load(e, &unit) && sees(e));
         may_be.map(|&e| (e, column(&path.seen, plan.sources.entries.len(), e))).collect()
     }

@@ -8,11 +8,11 @@
 //! of an inverse dynamic model (Spong, Hutchinson and Vidyasagar, "Robot Modeling and Control", 2006,
 //! section 7.3): a law that is missing there enters no state.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, SVD};
 
-use super::rates::points;
+use super::rates::{OTHER, points};
 use crate::model::probe::{Along, Point, matrices, slope, unit};
-use crate::model::{Ask, Law, Sizes};
+use crate::model::{Ask, LaneNumber, Law, Sizes};
 
 /// Points that are looked at.
 const POINTS: usize = 4;
@@ -20,8 +20,6 @@ const POINTS: usize = 4;
 const EXACT: f64 = 1e-9;
 /// Smallest singular value of (A, B), as a share of the largest, for which k is unique.
 const UNIQUE: f64 = 1e-9;
-/// How much larger the parameters of a second look are: a k that changes with them is none.
-const OTHER: f64 = 1.37;
 
 /// What the output equations of a law are.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -35,12 +33,14 @@ pub struct OutputEquations {
 impl OutputEquations {
     /// Those of a law, looked at around random points.
     pub fn of(law: &dyn Law) -> Self {
-        let sizes = Sizes::of(&law.signals());
+        let signals = law.signals();
+        let (sizes, continuous) = (Sizes::of(&signals), signals.time.is_continuous());
         let points = points(law, POINTS);
         let reached = reached(law, sizes, &points);
         if sizes.x == 0 || !reached.contains(&true) {
             return Self { balances: reached, rates: vec![] };
         }
+        // a k that changes with the parameters is none
         let moved = points.iter().map(|point| {
             let theta = point.theta.iter().map(|value| OTHER * value).collect();
             Point { theta, ..point.clone() }
@@ -50,7 +50,6 @@ impl OutputEquations {
         let mut found = Self::default();
         for (o, &reached) in reached.iter().enumerate() {
             found.balances.push(reached && here.rate(o).is_none());
-            let continuous = law.signals().time.is_continuous();
             let rate =
                 (reached && continuous && anywhere.unique).then(|| anywhere.rate(o)).flatten();
             if let Some(k) = rate {
@@ -63,10 +62,30 @@ impl OutputEquations {
     }
 }
 
+impl OutputEquations {
+    /// Adds to outputs that are rates what makes the rates of the states `with` out of `without`; all pack
+    /// by pack, of as many states and outputs as there are.
+    pub fn add_rates<R: LaneNumber>(&self, sizes: Sizes, y: &mut [R], [with, without]: [&[R]; 2]) {
+        if sizes.x == 0 {
+            return;
+        }
+        let packs = with.chunks_exact(sizes.x).zip(without.chunks_exact(sizes.x));
+        for (y, (with, without)) in y.chunks_exact_mut(sizes.y.max(1)).zip(packs) {
+            for (output, parts) in &self.rates {
+                for &(state, factor) in parts {
+                    y[*output] += (with[state] - without[state]) * factor;
+                }
+            }
+        }
+    }
+}
+
 /// Rows of (A, B) and (C, D) at some points, one under the other.
 struct Rows {
     moves: DMatrix<f64>,
     reads: DMatrix<f64>,
+    /// Of `moves`.
+    svd: SVD<f64, Dyn, Dyn>,
     /// Whether no two combinations of rows of (A, B) are the same.
     unique: bool,
 }
@@ -100,14 +119,15 @@ impl Rows {
         }
         let values = scaled.svd(false, false).singular_values;
         let unique = values.min() > UNIQUE * values.max();
-        Self { moves, reads, unique }
+        let svd = moves.clone().svd(true, true);
+        Self { moves, reads, svd, unique }
     }
 
     /// k with (c, d) = k (A, B), where there is one.
     fn rate(&self, output: usize) -> Option<DVector<f64>> {
         let row = self.reads.column(output).into_owned();
-        let svd = self.moves.clone().svd(true, true);
-        let k = svd.solve(&row, f64::EPSILON * svd.singular_values.max()).ok()?;
+        let smallest = f64::EPSILON * self.svd.singular_values.max();
+        let k = self.svd.solve(&row, smallest).ok()?;
         ((&row - &self.moves * &k).norm() <= EXACT * row.norm()).then_some(k)
     }
 }

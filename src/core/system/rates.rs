@@ -25,7 +25,7 @@ pub struct Rates {
 }
 
 /// How much larger the parameters of a second look are.
-const OTHER: f64 = 1.37;
+pub(super) const OTHER: f64 = 1.37;
 
 /// Random points around the model's initial state, all positive so that roots exist.
 pub fn points(law: &dyn Law, count: usize) -> Vec<Point> {

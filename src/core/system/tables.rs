@@ -58,6 +58,11 @@ impl Sources {
         self.entries[..self.named].iter().map(|(signal, _)| signal.name.clone()).collect()
     }
 
+    /// Whether an entry is an output: what enters an output depends on none.
+    pub fn is_output(&self, entry: usize) -> bool {
+        matches!(self.entries[entry].1, Origin::Output(_))
+    }
+
     /// Position of an origin.
     pub fn at(&self, origin: Origin) -> Option<usize> {
         self.entries.iter().position(|(_, o)| *o == origin)

@@ -68,7 +68,7 @@ impl Builder<'_, '_> {
     pub(crate) fn may_see(&self, target: usize, source: usize) -> bool {
         let base = &self.problem.base;
         let into_output = matches!(base.targets.entries[target].1, Origin::Output(_));
-        !(into_output && matches!(base.sources.entries[source].1, Origin::Output(_)))
+        !(into_output && base.sources.is_output(source))
     }
 
     pub(crate) fn time(&self) -> usize {

@@ -6,7 +6,7 @@ use std::path::{Component, Path};
 use super::answer::FORM;
 use super::folder::{CASES, EXAM, TRUTH, Written, sealed};
 use super::marks::removed;
-use super::unknown::UnknownName;
+use super::unknown::{UnknownName, unknown_names};
 use super::{Answer, Answers, CaseTruth, ExamResult, Marks};
 use crate::StudyError;
 use crate::data::{Step, Table, Want};
@@ -82,16 +82,14 @@ impl Written {
                 seconds: 0.0,
             };
             let answer = given.remove(&seal.case);
-            let baseline = match &answer {
-                Some((answer, _)) => {
-                    let baseline = load(&folder.join(CASES).join(&key).join("model.toml"))?;
-                    unknown.extend(super::unknown::unknown(answer, &known, &baseline));
-                    Some(baseline)
-                }
-                None => None,
-            };
-            let share = match (&answer, &baseline) {
-                (Some((Answer { extended_model: Some(model), .. }, stored)), Some(baseline)) => {
+            let own = || load(&folder.join(CASES).join(&key).join("model.toml"));
+            let baseline = answer.is_some().then(own).transpose()?;
+            let both = answer.as_ref().zip(baseline.as_ref());
+            unknown.extend(
+                both.iter().flat_map(|((answer, _), of)| unknown_names(answer, &known, of)),
+            );
+            let share = match both {
+                Some(((Answer { extended_model: Some(model), .. }, stored), baseline)) => {
                     // answers may be a stranger's: nothing but what was handed in is opened
                     let inside = |part| matches!(part, Component::Normal(_) | Component::CurDir);
                     if !Path::new(model).components().all(inside) {

@@ -20,7 +20,7 @@ pub struct UnknownName {
 }
 
 /// The unknown names of an answer, each once, in order.
-pub(super) fn unknown(answer: &Answer, cards: &[&Card], model: &System) -> Vec<UnknownName> {
+pub(super) fn unknown_names(answer: &Answer, cards: &[&Card], model: &System) -> Vec<UnknownName> {
     let effects: Vec<String> = cards.iter().map(|card| card.name.to_string()).collect();
     let signals = model.signals();
     let names = |list: &[crate::model::Signal]| -> Vec<String> {

@@ -46,14 +46,6 @@ impl<R: EffectNumber> Run<'_, R> {
             add(&mut self.k[0], &self.w);
             add(&mut self.room, &self.ramp);
         }
-        for pack in 0..self.packs {
-            for (output, parts) in &base.output_equations.rates {
-                let y = &mut self.y[pack * n.y + output];
-                for &(state, factor) in parts {
-                    let at = pack * n.x + state;
-                    *y += (self.k[0][at] - self.room[at]) * factor;
-                }
-            }
-        }
+        base.output_equations.add_rates(n, &mut self.y, [&self.k[0], &self.room]);
     }
 }

@@ -180,23 +180,17 @@ impl<'a, R: EffectNumber> Room<'a, R> {
     /// Adds what effects add to the rates of states to the outputs that read them.
     fn add_to_rates(&mut self, none: &[R], time: R, later: f64, y: &mut [R]) {
         let n = self.made.plan.sizes;
-        let rates = &self.made.plan.output_equations.rates;
         let inside = |slot: &Slot| enters(self.made, slot).0;
-        if rates.is_empty() || !self.made.plan.slots.iter().any(inside) {
+        if self.made.plan.output_equations.rates.is_empty()
+            || !self.made.plan.slots.iter().any(inside)
+        {
             return;
         }
         self.stage(0, 0, later);
         let mut without = vec![R::constant(0.0); self.packs * n.x];
         let block = self.block(&self.x, &self.u[0], none, time);
         self.law.answer(Ask::Derivative, R::call(&block, &mut without));
-        for pack in 0..self.packs {
-            for (output, parts) in rates {
-                for &(state, factor) in parts {
-                    let at = pack * n.x + state;
-                    y[pack * n.y + output] += (self.k[0][at] - without[at]) * factor;
-                }
-            }
-        }
+        self.made.plan.output_equations.add_rates(n, y, [&self.k[0], &without]);
     }
 
     /// Rates of all states at a trial state: stage `i`, with the inputs at `slot`.
