@@ -51,11 +51,19 @@ fn noise(seed: u64) -> impl FnMut() -> f64 {
     move || (0..12).map(|_| random.random_range(-0.5..0.5)).sum::<f64>()
 }
 
-/// A place and its rate, some time later, in 20 steps.
-pub fn later(mut x: [f64; 2], time: f64, acceleration: impl Fn([f64; 2]) -> f64) -> [f64; 2] {
+/// A place and its rate, some time later.
+pub fn later(x: [f64; 2], time: f64, acceleration: impl Fn([f64; 2]) -> f64) -> [f64; 2] {
+    states_later(x, time, |x| [x[1], acceleration(x)])
+}
+
+/// States some time later, in 20 steps of the classical Runge-Kutta method.
+pub fn states_later<const N: usize>(
+    mut x: [f64; N],
+    time: f64,
+    rate: impl Fn([f64; N]) -> [f64; N],
+) -> [f64; N] {
     let h = time / 20.0;
-    let rate = |x: [f64; 2]| [x[1], acceleration(x)];
-    let on = |x: [f64; 2], by: f64, k: [f64; 2]| [x[0] + by * k[0], x[1] + by * k[1]];
+    let on = |x: [f64; N], by: f64, k: [f64; N]| std::array::from_fn(|i| x[i] + by * k[i]);
     for _ in 0..20 {
         let k1 = rate(x);
         let k2 = rate(on(x, h / 2.0, k1));

@@ -133,33 +133,47 @@ impl Predictor {
             return Err(diverges);
         };
         let (nf, horizon) = (plant.forces(), horizon.max(1));
+        let faded: Vec<f64> = layout.parts(noise).map(|(_, part)| part.pole).collect();
         let mut ahead = vec![vec![f64::NAN; self.drive.len()]; ny];
         let (mut next, mut force, mut to) = (vec![0.0; n], vec![0.0; nf], plant.jacobian());
         let (mut y, mut c) = (vec![0.0; ny], vec![0.0; ny * n]);
+        let mut direct = vec![0.0; ny * nf];
         for (number, segment) in self.drive.segments.iter().enumerate() {
             plant.start(number);
             for k in segment.start..segment.end.saturating_sub(horizon) {
                 let mut x = path.states[k * n..][..n].to_vec();
+                // what enters, each part as one sample ahead and faded from there
+                let entering = |i: i32, force: &mut [f64]| {
+                    force.fill(0.0);
+                    let one = &pass.mean[(k + 1) * na + n..];
+                    for (&channel, (part, one)) in layout.forces.iter().zip(faded.iter().zip(one)) {
+                        force[channel] += one * part.powi(i - 1);
+                    }
+                };
                 force.copy_from_slice(&path.force[k * nf..][..nf]);
                 for i in 0..horizon {
                     plant.place(&x);
                     plant.observe(k + i, &mut y, &mut c, &mut []);
                     plant.advance(k + i, &force, &mut next, &mut to);
                     x.copy_from_slice(&next);
-                    for &channel in &layout.slow {
-                        force[channel] *= noise.slow[channel].pole;
-                    }
+                    entering(i as i32 + 1, &mut force);
                 }
                 plant.place(&x);
                 plant.observe(k + horizon, &mut y, &mut c, &mut []);
+                if path.has_direct() {
+                    plant.direct(&mut direct);
+                    for (y, row) in y.iter_mut().zip(direct.chunks_exact(nf)) {
+                        *y += row.iter().zip(&force).map(|(d, f)| d * f).sum::<f64>();
+                    }
+                }
                 for (series, y) in ahead.iter_mut().zip(&y) {
                     series[k + horizon] = *y;
                 }
                 // what wanders at an output is known one sample ahead, and decays from there
                 for (i, &output) in layout.wander.iter().enumerate() {
-                    let one = pass.mean[(k + 1) * na + n + layout.slow.len() + i];
-                    let faded = noise.wander[output].pole.powi(horizon as i32 - 1);
-                    ahead[output][k + horizon] += one * faded;
+                    let i = layout.forces.len() + i;
+                    let one = pass.mean[(k + 1) * na + n + i];
+                    ahead[output][k + horizon] += one * faded[i].powi(horizon as i32 - 1);
                 }
             }
         }

@@ -94,9 +94,11 @@ impl Back {
 
     /// The slope along the variance of a component that enters between samples `k` and `k + 1`.
     pub fn process(&mut self, path: &Path, k: usize, layout: &Layout, of: Component) -> f64 {
+        if let Some(at) = layout.entry(of) {
+            return self.entry(at);
+        }
         let (n, nf) = (path.n, path.forces);
         match of {
-            Component::Measurement(_) => 0.0,
             Component::White(c) => {
                 let g = path.g(k);
                 let (mut along, mut size) = (0.0, 0.0);
@@ -108,11 +110,7 @@ impl Back {
                 }
                 0.5 * (along * along - size)
             }
-            Component::Slow(c) => {
-                let at = layout.slow.iter().position(|&s| s == c);
-                at.map_or(0.0, |l| self.entry(n + l))
-            }
-            Component::Wander(o) => layout.wander_of(o).map_or(0.0, |at| self.entry(at)),
+            _ => 0.0,
         }
     }
 

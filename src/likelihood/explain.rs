@@ -247,7 +247,7 @@ impl Predictor {
         let pass = Pass::of(&run.path, &now.noise, true);
         let smoothed = pass.smoothed(&run.path, &now.noise);
         let nx = self.start.p0.len();
-        let begun = starts(&run.path, &smoothed.mean, &Layout::of(run.path.n, &now.noise));
+        let begun = starts(&run.path, &smoothed.mean, &Layout::of(&run.path, &now.noise));
         let mut covariances = covariances.into_iter();
         let choice = found.iter().map(|cause| cause.choice).sum();
         let causes = found.into_iter().map(|cause| {

@@ -67,11 +67,13 @@ pub(crate) fn follow(
     let given = (&model.theta[..], &effect_values[..]);
     let mut plant = Transition::new(system, &model.plan, drive, given, wanted.theta)?;
     let (n, nf, ny) = (plant.states(), plant.forces(), noise.measurement.len());
-    let layout = Layout::of(n, noise);
+    let direct = !model.plan.output_equations.rates.is_empty();
+    let layout = Layout::new(n, direct, noise);
     let len = drive.len();
     let nt = if wanted.theta { model.theta.len() } else { 0 };
     let sources = if wanted.seen { model.plan.sources.entries.len() } else { 0 };
     let mut path = blank((n, nf, ny), (nt, sources), len, drive, start);
+    path.d.resize(if direct { len * ny * nf } else { 0 }, 0.0);
     let mut kalman = Kalman::new(&layout);
     let mut to = plant.jacobian();
     let (mut x, mut slow) = (vec![0.0; n], vec![0.0; layout.len()]);
@@ -96,6 +98,9 @@ pub(crate) fn follow(
             plant.place(&x);
             let (y, c) = (&mut path.predicted[k * ny..][..ny], &mut path.c[k * ny * n..][..ny * n]);
             plant.observe(k, y, c, &mut path.c_theta[k * ny * nt..][..ny * nt]);
+            if direct {
+                plant.direct(&mut path.d[k * ny * nf..][..ny * nf]);
+            }
             // the update is a deviation from the predicted state, then added to it
             slow[..n].fill(0.0);
             for o in 0..ny {
@@ -104,7 +109,7 @@ pub(crate) fn follow(
                 if !measured[at].is_finite() {
                     continue;
                 }
-                layout.row(path.c(k, o), o, kalman.c_mut());
+                layout.row(path.rows(k, o), o, kalman.c_mut());
                 let expected: f64 = kalman.c().iter().zip(&slow).map(|(c, x)| c * x).sum();
                 let own = e - expected;
                 let gate = wanted.gate.filter(|_| row[o] < IN_A_ROW);
@@ -134,8 +139,9 @@ pub(crate) fn follow(
             if wanted.seen {
                 plant.see(&mut path.seen[k * sources..][..sources]);
             }
-            for (l, &c) in layout.slow.iter().enumerate() {
-                force[c] = slow[n + l];
+            force.fill(0.0);
+            for (l, &c) in layout.forces.iter().enumerate() {
+                force[c] += slow[n + l];
             }
             path.force[k * nf..][..nf].copy_from_slice(&force);
             plant.advance(k, &force, &mut next, &mut to);
@@ -180,6 +186,7 @@ fn blank(
         segments: drive.segments.clone(),
         a: zeros(n * n),
         g: zeros(n * nf),
+        d: vec![],
         c: zeros(ny * n),
         e: vec![f64::NAN; ny * len],
         jump: zeros(n),

@@ -68,7 +68,7 @@ pub(crate) fn nearly_most_likely(path: &Path, noise: &Noise, along: &[Component]
 fn until(stop: Stop, path: &Path, noise: &Noise, along: &[Component]) -> (Noise, f64) {
     let start: Vec<f64> =
         along.iter().map(|&c| noise.variance(c).max(f64::MIN_POSITIVE).ln()).collect();
-    let pass = Pass::new(path, Layout::of(path.n, noise), false);
+    let pass = Pass::new(path, Layout::of(path, noise), false);
     let score = Score { path, noise, along, start: start.clone(), pass: RefCell::new(pass) };
     let mut theta = start;
     // a start without a finite value is its own answer

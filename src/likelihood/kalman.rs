@@ -121,7 +121,8 @@ impl Kalman {
         for i in 0..na {
             combine(self.p.row_mut(i), &self.m.plain(i)[..na], &self.transposed);
         }
-        for (c, &q) in noise.white.iter().enumerate().filter(|(_, q)| **q > 0.0) {
+        let white: &[f64] = if layout.lets_white_in() { &noise.white } else { &[] };
+        for (c, &q) in white.iter().enumerate().filter(|(_, q)| **q > 0.0) {
             for i in 0..n {
                 let own = q * g[i * nf + c];
                 let row = self.p.plain_mut(i);

@@ -1,8 +1,8 @@
-//! The missing force as a signal: a smoother with a random walk on one channel, or in an output equation that is
+//! The missing force as a signal: a smoother with a slow process on one channel, or in an output equation that is
 //! a balance of its own, no law assumed.
 //!
-//! x[k+1] = F(x, u, m), m[k+1] = m[k] + increments, y = h(x) + v: the variances of increments and of v
-//! by maximum likelihood, then E(m[k] | all y) and its standard deviation, and the share that each
+//! x[k+1] = F(x, u, m), m[k+1] = pole m[k] + increments, y = h(x, u, m) + v: the variances of increments and of
+//! v and the pole by maximum likelihood, then E(m[k] | all y) and its standard deviation, and the share that each
 //! coordinate, along the smoothed states, explains of it. A picture and a proposer, no judge: a smoother
 //! blurs steps, and an offset of the channel is part of the force.
 //! Sources: Rauch, Tung and Striebel, AIAA J. 3, 1965; Durbin and Koopman, 2012, ch. 4.
@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::error::LikelihoodError;
 use super::follow::Wanted;
-use super::intensities::{concentrated, most_likely};
+use super::intensities::{concentrated, most_likely, nearly_most_likely};
 use super::noise::{Layout, Noise, Slow};
 use super::path::Path;
 use super::predictor::{Predictor, column, starts};
@@ -19,10 +19,13 @@ use super::replay::Pass;
 use super::share::share;
 use crate::system::Transition;
 
-/// Sizes that the walk is begun with, in units of the channel's force scale, and the measurement
-/// noise in units of the outputs' spreads.
-const SIZES: [f64; 4] = [1e-8, 1e-6, 1e-4, 1e-2];
-const NOISES: [f64; 4] = [1e-8, 1e-6, 1e-4, 1e-2];
+/// Variances of the increments that are tried, over those of the measurement noise, in units of the squares
+/// of the force scale and of the outputs' spreads: one another's multiple is no other start.
+const RATIOS: [f64; 7] = [1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6];
+
+/// Poles of the force: a random walk, and processes that fade within 1000 to 10 samples. A walk keeps what no
+/// sensor sees, as the constant part of a force on a sprung mass with an accelerometer.
+const POLES: [f64; 6] = [1.0, 0.999, 0.997, 0.99, 0.97, 0.9];
 
 /// Log likelihood that two channels may differ by and still explain alike: odds of 20 to 1, Jeffreys'
 /// bound of strong evidence ("Theory of Probability", 1961, appendix B).
@@ -117,8 +120,7 @@ impl Predictor {
         let without = most_likely(&path, &start, &start.components()).1;
         let mut sites = self.lacking(&path);
         if sites.len() > most {
-            let likely =
-                |(i, &site): (usize, &Lacking)| (self.walks(&path, site, &NOISES[1..2]).1, i);
+            let likely = |(i, &site): (usize, &Lacking)| (self.begun(&path, site, POLES[0]).1, i);
             let mut order: Vec<(f64, usize)> = sites.par_iter().enumerate().map(likely).collect();
             order.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
             sites = order.into_iter().map(|(_, i)| sites[i]).take(most).collect();
@@ -161,7 +163,7 @@ impl Predictor {
             let time = sample as f64 * self.model.plan.sampling_time;
             return Err(LikelihoodError::Diverges { sample, time });
         }
-        let (path, layout) = (&run.path, Layout::of(run.path.n, &noise));
+        let (path, layout) = (&run.path, Layout::of(&run.path, &noise));
         let smoothed = Pass::of(path, &noise, true).smoothed(path, &noise);
         let (n, na) = (path.n, layout.len());
         let values = column(&smoothed.mean, na, n);
@@ -183,30 +185,35 @@ impl Predictor {
         Ok(MissingForce { channel, unit, rms, gain, values, band, explained_by, alike })
     }
 
-    /// The most likely measurement noise and random walk at one place.
+    /// The most likely measurement noise and slow force at one place, of the shortest memory that the record
+    /// calls for: of poles that it does not tell apart the smallest.
     fn walking(&self, path: &Path, at: Lacking) -> Noise {
-        let noise = self.walks(path, at, &NOISES).0;
-        most_likely(path, &noise, &noise.components()).0
+        let fitted = POLES.map(|pole| {
+            let noise = self.begun(path, at, pole).0;
+            nearly_most_likely(path, &noise, &noise.components())
+        });
+        let best = fitted.iter().map(|(_, value)| *value).fold(f64::NEG_INFINITY, f64::max);
+        let [walk, ..] = &fitted;
+        let shortest = fitted.iter().rev().find(|(_, value)| best - value < ALIKE);
+        shortest.unwrap_or(walk).0.clone()
     }
 
-    /// The most likely of some walks at one place, and its log likelihood, all variances by a common
-    /// factor.
-    fn walks(&self, path: &Path, at: Lacking, noises: &[f64]) -> (Noise, f64) {
+    /// The most likely of some slow forces of one pole at one place, and its log likelihood, all variances
+    /// by a common factor.
+    fn begun(&self, path: &Path, at: Lacking, pole: f64) -> (Noise, f64) {
         let scale = match at {
             Lacking::Output(o) => self.spread[o],
             Lacking::Force(c) => path.force_scales()[c],
         };
-        let tried = SIZES.iter().flat_map(|size| {
-            noises.iter().map(move |left| {
-                let measurement = self.spread.iter().map(|s| left * s * s + f64::MIN_POSITIVE);
-                let mut noise = self.white(measurement.collect());
-                let walk = Slow::walk(size * scale * scale);
-                match at {
-                    Lacking::Output(o) => noise.wander[o] = walk,
-                    Lacking::Force(c) => noise.slow[c] = walk,
-                }
-                concentrated(path, &noise)
-            })
+        let tried = RATIOS.iter().map(|ratio| {
+            let measurement = self.spread.iter().map(|s| 1e-5 / ratio.sqrt() * s * s);
+            let mut noise = self.white(measurement.map(|r| r + f64::MIN_POSITIVE).collect());
+            let slow = Slow { variance: 1e-5 * ratio.sqrt() * scale * scale, pole };
+            match at {
+                Lacking::Output(o) => noise.wander[o] = slow,
+                Lacking::Force(c) => noise.slow[c] = slow,
+            }
+            concentrated(path, &noise)
         });
         let best = tried.max_by(|a, b| a.1.total_cmp(&b.1));
         best.unwrap_or_else(|| (self.white(self.spread.clone()), f64::NEG_INFINITY))
@@ -273,7 +280,7 @@ impl Predictor {
     /// record says, with the same uncertainty. Every hypothesis that is compared has the same.
     pub(crate) fn settle(&mut self, path: &Path, noise: &Noise) {
         let pass = Pass::of(path, noise, true);
-        let layout = Layout::of(path.n, noise);
+        let layout = Layout::of(path, noise);
         let smoothed = pass.smoothed(path, noise);
         let nx = self.start.p0.len();
         let found = starts(path, &smoothed.mean, &layout);

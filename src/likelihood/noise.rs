@@ -6,13 +6,15 @@
 //! that starts at 0; a smaller one is a stationary process of first order (Ornstein-Uhlenbeck).
 //! Source: Ljung, "System Identification", 2nd ed., sections 4.2 and 4.3.
 
+use super::path::Path;
+
 /// A process of first order: increments of a variance, and a pole.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Slow {
     /// Variance of the increments from sample to sample, in the square of the signal's unit;
     /// 0: there is none.
     pub variance: f64,
-    /// Share that is left after one sample, above 0 and at most 1.
+    /// Share that is left after one sample, between 0 (white) and 1 (a random walk).
     pub pole: f64,
 }
 
@@ -141,46 +143,84 @@ pub enum Component {
     Wander(usize),
 }
 
-/// Where the slow parts stand in the augmented state: states, slow forces, wanders.
+/// Where the random parts with a value of their own stand in the augmented state: states, slow forces,
+/// white forces that an output reads at once, wanders.
+///
+/// A white force is held over its sample. Where outputs read rates, y[k] = h(x[k]) + D w[k] and
+/// x[k+1] = F(x[k], w[k]) share w[k]: it is then a state of pole 0.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Layout {
     /// States of model and effects.
     pub n: usize,
-    /// Channels or inputs with a slow force.
-    pub slow: Vec<usize>,
+    /// Channels or inputs with a slow force, then those with a white one that is held.
+    pub forces: Vec<usize>,
+    /// How many of them are slow.
+    slow: usize,
     /// Outputs whose sensor wanders.
     pub wander: Vec<usize>,
 }
 
 impl Layout {
-    pub fn of(n: usize, noise: &Noise) -> Self {
-        let active = |slow: &[Slow]| (0..slow.len()).filter(|&i| slow[i].is_active()).collect();
-        Self { n, slow: active(&noise.slow), wander: active(&noise.wander) }
+    /// That of a linearisation.
+    pub fn of(path: &Path, noise: &Noise) -> Self {
+        Self::new(path.n, path.has_direct(), noise)
+    }
+
+    /// For so many states; `direct` says whether an output reads what enters the plant.
+    pub fn new(n: usize, direct: bool, noise: &Noise) -> Self {
+        let active = |slow: &[Slow]| -> Vec<usize> {
+            (0..slow.len()).filter(|&i| slow[i].is_active()).collect()
+        };
+        let mut forces = active(&noise.slow);
+        let slow = forces.len();
+        forces.extend((0..noise.white.len()).filter(|&c| direct && noise.white[c] > 0.0));
+        Self { n, forces, slow, wander: active(&noise.wander) }
     }
 
     /// Entries of the augmented state.
     pub fn len(&self) -> usize {
-        self.n + self.slow.len() + self.wander.len()
+        self.n + self.forces.len() + self.wander.len()
     }
 
-    /// The slow parts in their order: entry, and the process.
+    /// The parts beside the states in their order: entry, and the process.
     pub fn parts<'a>(&'a self, noise: &'a Noise) -> impl Iterator<Item = (usize, Slow)> + 'a {
-        let slow = self.slow.iter().map(|&c| noise.slow[c]);
+        let (slow, held) = self.forces.split_at(self.slow);
+        let slow = slow.iter().map(|&c| noise.slow[c]);
+        let held = held.iter().map(|&c| Slow { variance: noise.white[c], pole: 0.0 });
         let wander = self.wander.iter().map(|&o| noise.wander[o]);
-        slow.chain(wander).enumerate().map(|(i, part)| (self.n + i, part))
+        slow.chain(held).chain(wander).enumerate().map(|(i, part)| (self.n + i, part))
     }
 
-    /// Entry of an output's wander.
-    pub fn wander_of(&self, output: usize) -> Option<usize> {
-        let at = self.wander.iter().position(|&o| o == output)?;
-        Some(self.n + self.slow.len() + at)
+    /// Entry of a component, where it has one.
+    pub fn entry(&self, of: Component) -> Option<usize> {
+        let (slow, held) = self.forces.split_at(self.slow);
+        match of {
+            Component::Measurement(_) => None,
+            Component::Slow(c) => Some(self.n + slow.iter().position(|&s| s == c)?),
+            Component::White(c) => Some(self.n + self.slow + held.iter().position(|&s| s == c)?),
+            Component::Wander(o) => {
+                let at = self.wander.iter().position(|&w| w == o)?;
+                Some(self.n + self.forces.len() + at)
+            }
+        }
     }
 
-    /// The row of an output: its derivatives along the states, and its wander.
-    pub fn row(&self, c: &[f64], output: usize, to: &mut [f64]) {
+    /// Whether white forces enter between samples without a state of their own.
+    pub fn lets_white_in(&self) -> bool {
+        self.slow == self.forces.len()
+    }
+
+    /// The row of an output: its derivatives along the states and, where they enter it at once (`d`, empty
+    /// where none does), along the forces, and its wander.
+    pub fn row(&self, (c, d): (&[f64], &[f64]), output: usize, to: &mut [f64]) {
         to.fill(0.0);
         to[..self.n].copy_from_slice(c);
-        if let Some(at) = self.wander_of(output) {
+        if !d.is_empty() {
+            for (to, &force) in to[self.n..].iter_mut().zip(&self.forces) {
+                *to = d[force];
+            }
+        }
+        if let Some(at) = self.entry(Component::Wander(output)) {
             to[at] = 1.0;
         }
     }

@@ -19,13 +19,14 @@ pub(crate) struct Path {
     /// Next states along states, and along forces.
     pub a: Vec<f64>,
     pub g: Vec<f64>,
-    /// Outputs along states.
+    /// Outputs along states, and along forces where these enter rates that an output reads.
     pub c: Vec<f64>,
+    pub d: Vec<f64>,
     /// Measured less predicted, without wander; not a number where not measured or left out.
     pub e: Vec<f64>,
     /// Filtered less predicted states.
     pub jump: Vec<f64>,
-    /// Slow forces that the path was run with.
+    /// Forces of the augmented state that the path was run with.
     pub force: Vec<f64>,
     /// Filtered states.
     pub states: Vec<f64>,
@@ -67,8 +68,23 @@ impl Path {
                 && equal(&self.a, n * n, k)
                 && equal(&self.g, n * nf, k)
                 && equal(&self.c, ny * n, k)
+                && (self.d.is_empty() || equal(&self.d, ny * nf, k))
         };
         self.as_before = (0..self.len).map(same).collect();
+    }
+
+    /// Rows of output `o`, along states and along forces; the latter empty where no output reads these.
+    pub fn rows(&self, k: usize, o: usize) -> (&[f64], &[f64]) {
+        let d = match self.has_direct() {
+            true => &self.d[(k * self.outputs + o) * self.forces..][..self.forces],
+            false => &[][..],
+        };
+        (self.c(k, o), d)
+    }
+
+    /// Whether an output reads what enters the plant.
+    pub fn has_direct(&self) -> bool {
+        !self.d.is_empty()
     }
 
     /// Row of output `o`.

@@ -57,7 +57,7 @@ impl Pass {
 
     /// A pass of its own.
     pub fn of(path: &Path, noise: &Noise, kept: bool) -> Self {
-        let mut pass = Self::new(path, Layout::of(path.n, noise), kept);
+        let mut pass = Self::new(path, Layout::of(path, noise), kept);
         pass.forward(path, noise);
         pass
     }
@@ -89,17 +89,13 @@ impl Pass {
             At::Sample(_) => (),
             At::Start => {
                 for (slope, component) in to.iter_mut().zip(along) {
-                    let (at, start) = match *component {
-                        Component::Slow(c) => {
-                            (self.layout.slow.iter().position(|&s| s == c), noise.slow[c])
-                        }
-                        Component::Wander(o) => {
-                            (self.layout.wander_of(o).map(|i| i - self.layout.n), noise.wander[o])
-                        }
-                        _ => continue,
+                    let Some(at) = self.layout.entry(*component) else { continue };
+                    let start = match *component {
+                        Component::Slow(c) => noise.slow[c].start(),
+                        Component::Wander(o) => noise.wander[o].start(),
+                        _ => 1.0,
                     };
-                    let Some(at) = at else { continue };
-                    *slope += back.entry(self.layout.n + at) * start.start();
+                    *slope += back.entry(at) * start;
                 }
             }
         });
@@ -146,7 +142,7 @@ lacuna_core::per_isa! {
                         (pass.z[at], pass.s[at]) = (f64::NAN, f64::NAN);
                         continue;
                     }
-                    pass.layout.row(path.c(k, o), o, kalman.c_mut());
+                    pass.layout.row(path.rows(k, o), o, kalman.c_mut());
                     let expected: f64 = kalman.c().iter().zip(&*x).map(|(c, x)| c * x).sum();
                     let e = measured - expected;
                     if stationary {
@@ -242,7 +238,7 @@ lacuna_core::per_isa! {
                     if !pass.z[at].is_finite() {
                         continue;
                     }
-                    pass.layout.row(path.c(k, o), o, back.c_mut());
+                    pass.layout.row(path.rows(k, o), o, back.c_mut());
                     let d = stationary.then_some(sizes[o]);
                     let gain = &pass.k[at * na..][..na];
                     let (u, d) = back.update(gain, pass.z[at], pass.s[at], d);
@@ -267,7 +263,7 @@ fn step(path: &Path, k: usize, layout: &Layout, noise: &Noise, x: &[f64], to: &m
         for c in 0..nf {
             sum -= g[i * nf + c] * force[c];
         }
-        for (l, &c) in layout.slow.iter().enumerate() {
+        for (l, &c) in layout.forces.iter().enumerate() {
             sum += g[i * nf + c] * x[n + l];
         }
         to[i] = sum;

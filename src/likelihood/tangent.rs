@@ -1,7 +1,7 @@
 //! Tangents of the innovations along many laws at one site: Gram matrix and score in one pass.
 //!
 //! With the gains K held, a law w = theta phi at a force site moves the predicted state by d and the
-//! innovations by t = -C d (- phi at an output's own site): d+ = d- + K t, d-[k+1] = F d+ + G phi(k),
+//! innovations by t = -C d, less phi at an output's own site and D phi where it reads the force: d+ = d- + K t, d-[k+1] = F d+ + G phi(k),
 //! z-tangent L^-1 t. phi is evaluated at the filtered state, which depends on the past only: under the
 //! null the score sum(t' z) is a martingale of mean zero, in closed loop too. A parameter's columns are
 //! dF/dtheta and dh/dtheta.
@@ -53,7 +53,7 @@ pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[(Site, Ve
                 if !pass.z[at].is_finite() {
                     continue;
                 }
-                pass.layout.row(path.c(k, o), o, &mut row);
+                pass.layout.row(path.rows(k, o), o, &mut row);
                 t.fill(0.0);
                 for (i, c) in row.iter().enumerate().filter(|(_, c)| **c != 0.0) {
                     t.iter_mut().zip(&d[i * m..][..m]).for_each(|(t, d)| *t -= c * d);
@@ -61,6 +61,9 @@ pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[(Site, Ve
                 for (t, (site, phi)) in t.iter_mut().zip(columns) {
                     match *site {
                         Site::Output(own) if own == o => *t -= phi[k],
+                        Site::Force(force) if path.has_direct() => {
+                            *t -= path.rows(k, o).1[force] * phi[k];
+                        }
                         Site::Parameter(p) => *t -= path.c_theta[at * nt + p] * phi[k],
                         _ => {}
                     }
@@ -92,7 +95,7 @@ pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[(Site, Ve
                     let f = a[i * n + j];
                     to.iter_mut().zip(&d[j * m..][..m]).for_each(|(to, d)| *to += f * d);
                 }
-                for (l, &c) in pass.layout.slow.iter().enumerate() {
+                for (l, &c) in pass.layout.forces.iter().enumerate() {
                     let f = g[i * nf + c];
                     to.iter_mut().zip(&d[(n + l) * m..][..m]).for_each(|(to, d)| *to += f * d);
                 }

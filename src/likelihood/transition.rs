@@ -1,4 +1,4 @@
-//! The augmented transition of one sample: F = [A, G of the slow forces; 0, their poles].
+//! The augmented transition of one sample: F = [A, G of the forces that are states; 0, their poles].
 
 use super::noise::{Layout, Noise};
 use super::rows::Rows;
@@ -10,7 +10,7 @@ pub(crate) fn augment(f: &mut Rows, a: &[f64], g: &[f64], layout: &Layout, noise
     for i in 0..n {
         let row = f.plain_mut(i);
         row[..n].copy_from_slice(&a[i * n..][..n]);
-        for (l, &c) in layout.slow.iter().enumerate() {
+        for (l, &c) in layout.forces.iter().enumerate() {
             row[n + l] = g[i * nf + c];
         }
     }

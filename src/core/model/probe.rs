@@ -34,7 +34,6 @@ pub enum Along<'a> {
     /// In the own channels.
     Channel(&'a [f64]),
     /// In the parameters.
-    #[cfg(test)]
     Theta(&'a [f64]),
 }
 
@@ -70,7 +69,6 @@ pub fn value(law: &dyn Law, sizes: Sizes, ask: Ask, at: &Point) -> Vec<f64> {
 
 /// The derivative of the law's answer along one direction, exactly.
 pub fn slope(law: &dyn Law, sizes: Sizes, ask: Ask, at: &Point, along: Along<'_>) -> Vec<f64> {
-    #[cfg_attr(not(test), expect(unused_mut))]
     let mut theta = constants::<D>(&at.theta);
     let mut x = constants::<D>(&at.x);
     let mut u = constants::<D>(&at.u);
@@ -79,7 +77,6 @@ pub fn slope(law: &dyn Law, sizes: Sizes, ask: Ask, at: &Point, along: Along<'_>
         Along::State(d) => (&mut x, d),
         Along::Input(d) => (&mut u, d),
         Along::Channel(d) => (&mut w, d),
-        #[cfg(test)]
         Along::Theta(d) => (&mut theta, d),
     };
     for (dual, &d) in target.iter_mut().zip(direction) {

@@ -1,25 +1,20 @@
 //! What output equations say beside what a sensor reads of the states: rates, and balances of their own.
 //!
-//! Around a point a model is dx/dt = A x + B u, y = C x + D u. A row (c, d) of (C, D) with d = 0 is what a
-//! sensor reads of the states: laws of physics act before it, in the channels of the states. With d != 0
-//! and (c, d) = k (A, B) for one k at all points it is the reading of a rate, such as an acceleration: what
-//! enters dx/dt by G w enters it by k G w (D_yw of the linear fractional representation: Hoekstra et al.,
-//! eq. `interconn_mx`). Any other row with d != 0 is a balance of its own, such as the torque J q'' + g sin q
-//! of an inverse dynamic model (Spong, Hutchinson and Vidyasagar, "Robot Modeling and Control", 2006,
-//! section 7.3): a law that is missing there enters no state.
+//! Around a point a model is dx/dt = A x + B u, y = C x + D u. A row (c, d) of (C, D) with d = 0 is mostly what
+//! a sensor reads of the states: laws of physics act before it, in the channels of the states. An output that
+//! [reads rates](super::rate_readings), such as an acceleration, reads what enters dx/dt by G w as k G w at
+//! once (D_yw of the linear fractional representation: Hoekstra et al., eq. `interconn_mx`). Any other row
+//! with d != 0 is a balance of its own, such as the torque J q'' + g sin q of an inverse dynamic model (Spong,
+//! Hutchinson and Vidyasagar, "Robot Modeling and Control", 2006, section 7.3): a law that is missing there
+//! enters no state.
 
-use nalgebra::{DMatrix, DVector, Dyn, SVD};
-
-use super::rates::{OTHER, points};
-use crate::model::probe::{Along, Point, matrices, slope, unit};
+use super::rate_readings::Readings;
+use super::rates::points;
+use crate::model::probe::{Along, Point, slope, unit};
 use crate::model::{Ask, LaneNumber, Law, Sizes};
 
 /// Points that are looked at.
 const POINTS: usize = 4;
-/// How closely a row is a rate, as a share of it.
-const EXACT: f64 = 1e-9;
-/// Smallest singular value of (A, B), as a share of the largest, for which k is unique.
-const UNIQUE: f64 = 1e-9;
 
 /// What the output equations of a law are.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -37,25 +32,17 @@ impl OutputEquations {
         let (sizes, continuous) = (Sizes::of(&signals), signals.time.is_continuous());
         let points = points(law, POINTS);
         let reached = reached(law, sizes, &points);
-        if sizes.x == 0 || !reached.contains(&true) {
+        if sizes.x == 0 {
             return Self { balances: reached, rates: vec![] };
         }
-        // a k that changes with the parameters is none
-        let moved = points.iter().map(|point| {
-            let theta = point.theta.iter().map(|value| OTHER * value).collect();
-            Point { theta, ..point.clone() }
-        });
-        let all: Vec<Point> = points.iter().cloned().chain(moved).collect();
-        let (here, anywhere) = (Rows::new(law, sizes, &points), Rows::new(law, sizes, &all));
+        let readings = Readings::new(law, sizes, &points);
         let mut found = Self::default();
         for (o, &reached) in reached.iter().enumerate() {
-            found.balances.push(reached && here.rate(o).is_none());
-            let rate =
-                (reached && continuous && anywhere.unique).then(|| anywhere.rate(o)).flatten();
-            if let Some(k) = rate {
-                let least = EXACT * k.amax();
-                let parts = k.iter().copied().enumerate().filter(|(_, k)| k.abs() > least);
-                found.rates.push((o, parts.collect()));
+            let parts = if continuous { readings.rates(o, reached) } else { vec![] };
+            let is_force = || reached && readings.is_force(o);
+            found.balances.push(reached && parts.is_empty() && !is_force());
+            if !parts.is_empty() {
+                found.rates.push((o, parts));
             }
         }
         found
@@ -77,58 +64,6 @@ impl OutputEquations {
                 }
             }
         }
-    }
-}
-
-/// Rows of (A, B) and (C, D) at some points, one under the other.
-struct Rows {
-    moves: DMatrix<f64>,
-    reads: DMatrix<f64>,
-    /// Of `moves`.
-    svd: SVD<f64, Dyn, Dyn>,
-    /// Whether no two combinations of rows of (A, B) are the same.
-    unique: bool,
-}
-
-impl Rows {
-    fn new(law: &dyn Law, sizes: Sizes, points: &[Point]) -> Self {
-        let columns = sizes.x + sizes.u;
-        let mut moves = DMatrix::zeros(points.len() * columns, sizes.x);
-        let mut reads = DMatrix::zeros(points.len() * columns, sizes.y);
-        for (p, point) in points.iter().enumerate() {
-            let at = matrices(law, sizes, point);
-            for (from, a, c) in [(0, &at.a, &at.c), (sizes.x, &at.b, &at.d)] {
-                let first = p * columns + from;
-                moves.rows_mut(first, a.ncols()).copy_from(&a.transpose());
-                reads.rows_mut(first, c.ncols()).copy_from(&c.transpose());
-            }
-        }
-        // where the law has no slope nothing is compared
-        for k in 0..moves.nrows() {
-            let finite = moves.row(k).iter().chain(reads.row(k).iter()).all(|v| v.is_finite());
-            if !finite {
-                moves.row_mut(k).fill(0.0);
-                reads.row_mut(k).fill(0.0);
-            }
-        }
-        // lengths of rates differ by their units, which makes no two of them one
-        let mut scaled = moves.clone();
-        for mut column in scaled.column_iter_mut() {
-            let length = column.norm();
-            column /= if length > 0.0 { length } else { 1.0 };
-        }
-        let values = scaled.svd(false, false).singular_values;
-        let unique = values.min() > UNIQUE * values.max();
-        let svd = moves.clone().svd(true, true);
-        Self { moves, reads, svd, unique }
-    }
-
-    /// k with (c, d) = k (A, B), where there is one.
-    fn rate(&self, output: usize) -> Option<DVector<f64>> {
-        let row = self.reads.column(output).into_owned();
-        let smallest = f64::EPSILON * self.svd.singular_values.max();
-        let k = self.svd.solve(&row, smallest).ok()?;
-        ((&row - &self.moves * &k).norm() <= EXACT * row.norm()).then_some(k)
     }
 }
 
@@ -172,9 +107,10 @@ mod tests {
         let found = found(outputs, states);
         // a force that is m v' is a rate by a factor that may be wrong, and nothing of its own
         assert_eq!(found.balances, [false, false, true, true, false]);
+        // the speed that is read beside the rate is no rate that anything enters
         let [(1, parts)] = &found.rates[..] else { panic!("{found:?}") };
-        let factors: Vec<f64> = parts.iter().map(|(_, k)| (k * 1e9).round() / 1e9).collect();
-        assert_eq!(factors, [1.0, 2.0]);
+        let [(1, factor)] = parts[..] else { panic!("{parts:?}") };
+        assert!((factor - 2.0).abs() < 1e-9, "{factor}");
     }
 
     #[test]

@@ -18,6 +18,7 @@ mod outputs;
 mod path;
 mod placed;
 mod plan;
+mod rate_readings;
 mod rates;
 mod recorded;
 mod sampling;

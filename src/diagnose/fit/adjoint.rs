@@ -1,11 +1,12 @@
 //! What a little of anything that enters does to a sum of outputs: the adjoint of the simulation.
 //!
 //! With x[k+1] = F(x[k], u[k], w[k]; theta), y[k] = h(x[k], u[k]; theta) and A = dF/dx, G = dF/dw,
-//! C = dh/dx along the course of a model, for all w at once and any weights rho:
+//! C = dh/dx along the course of a model, and D = dh/dw where an output reads rates, for all w at once and any
+//! weights rho:
 //!
 //! ```text
 //! sum_k rho[k]' dy[k] = sum_k g[k]' dw[k]
-//! g[k] = G[k]' lambda[k+1],   lambda[k] = A[k]' lambda[k+1] + C[k]' rho[k],   lambda[end] = 0
+//! g[k] = G[k]' lambda[k+1] + D[k]' rho[k],   lambda[k] = A[k]' lambda[k+1] + C[k]' rho[k],   lambda[end] = 0
 //! ```
 //!
 //! (adjoint-state method: Plessix, Geophysical Journal International 167, 2006; Giles and Pierce, Flow,
@@ -31,6 +32,8 @@ struct Slopes {
     a: Vec<f64>,
     g: Vec<f64>,
     c: Vec<f64>,
+    /// Empty where no output reads rates.
+    d: Vec<f64>,
 }
 
 /// What is known about a model that laws are asked about.
@@ -125,9 +128,11 @@ impl Adjoint {
         let (n, ny) = (along.states(), problem.y.len());
         let mut to = along.jacobian();
         let (mut c, mut y) = (vec![0.0; ny * n], vec![0.0; ny]);
+        let direct = !problem.base.output_equations.rates.is_empty();
+        let mut d = vec![0.0; if direct { ny * self.forces } else { 0 }];
         let (still, mut seen) = (vec![0.0; self.forces], vec![0.0; self.seen.len()]);
         let mut course = Course { slopes: vec![], at: vec![], states: vec![], n };
-        let bytes = 8 * (to.a.len() + to.g.len() + c.len());
+        let bytes = 8 * (to.a.len() + to.g.len() + c.len() + d.len());
         for (number, segment) in drive.segments.iter().enumerate() {
             self.begins.push(course.at.len());
             along.start(number);
@@ -140,10 +145,14 @@ impl Adjoint {
                 course.states.push(x.clone());
                 along.place(&x);
                 along.observe(k, &mut y, &mut c, &mut []);
+                if direct {
+                    along.direct(&mut d);
+                }
                 along.see(&mut seen);
                 self.seen.iter_mut().zip(&seen).for_each(|(to, v)| to.push(*v));
                 along.advance(k, &still, &mut x, &mut to);
-                let now = Slopes { a: to.a.clone(), g: to.g.clone(), c: c.clone() };
+                let (a, g) = (to.a.clone(), to.g.clone());
+                let now = Slopes { a, g, c: c.clone(), d: d.clone() };
                 // those of a linear model are the same all along
                 if course.slopes.last() != Some(&now) {
                     course.slopes.push(now);
@@ -205,7 +214,7 @@ impl Adjoint {
             if self.begins.binary_search(&(at + 1)).is_ok() {
                 lambda.fill(0.0);
             }
-            let Slopes { a, g, c } = &course.slopes[course.at[at]];
+            let Slopes { a, g, c, d } = &course.slopes[course.at[at]];
             let (mut into, mut before) = (vec![0.0; forces * sums], vec![0.0; n * sums]);
             for i in 0..n {
                 let own = &lambda[i * sums..][..sums];
@@ -213,7 +222,11 @@ impl Adjoint {
                 spread(&mut before, &a[i * n..][..n], own);
             }
             for o in 0..ny {
-                spread(&mut before, &c[o * n..][..n], &rho[at][o * sums..][..sums]);
+                let own = &rho[at][o * sums..][..sums];
+                spread(&mut before, &c[o * n..][..n], own);
+                if !d.is_empty() {
+                    spread(&mut into, &d[o * forces..][..forces], own);
+                }
             }
             for (place, weights) in self.weights.iter_mut().enumerate() {
                 let from = match place < forces {

@@ -42,16 +42,14 @@ pub(crate) enum Place {
 
 impl Place {
     /// Where an entry of the target table is; `is_path`: at an input before all that follows it. `None`
-    /// where what goes straight to an output is more than what enters the states.
+    /// where such an input goes straight to an output, beside the states.
     pub fn of(
         (problem, nominal): (&Problem<'_>, &Nominal),
         target: usize,
         is_path: bool,
     ) -> Option<Self> {
         let base = &problem.base;
-        let read = !base.output_equations.rates.is_empty();
         match base.targets.entries[target].1 {
-            Origin::Own(_) | Origin::Input(_) if read => None,
             Origin::Own(channel) => Some(Self::Force(channel)),
             Origin::Input(i) if is_path && nominal.is_direct(problem, i) => None,
             Origin::Input(i) => Some(Self::Force(base.sizes.w + i)),

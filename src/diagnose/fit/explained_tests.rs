@@ -13,10 +13,12 @@ use crate::statistics::add_to_basis;
 use lacuna_core::file::{Format, parse};
 
 const SIGNS: usize = 16;
+/// What a sensor of speed reads.
+const SPEED: &str = "v + 0.1*x";
 const EXTENT: Extent = Extent { signs: SIGNS, parameters: true, room: 1 << 30 };
 
-/// A nonlinear machine, by steps of an integrator or from sample to sample.
-fn model(time: &str) -> String {
+/// A nonlinear machine, by steps of an integrator or from sample to sample, with this second output.
+fn model(time: &str, second: &str) -> String {
     let states = match time {
         "continuous" => {
             "{ name = \"x\", derivative = \"v\" }, \
@@ -29,7 +31,7 @@ fn model(time: &str) -> String {
     };
     format!(
         "sampling_time = 0.05\n[model.equations]\ninputs = [{{ name = \"u\" }}]\nstates = [{states}]\n\
-         outputs = [{{ name = \"y\", value = \"x\" }}, {{ name = \"z\", value = \"v + 0.1*x\" }}]\n\
+         outputs = [{{ name = \"y\", value = \"x\" }}, {{ name = \"z\", value = \"{second}\" }}]\n\
          parameters = [{{ name = \"k\", value = 4.0 }}]\n"
     )
 }
@@ -60,8 +62,8 @@ fn column(prepared: &Prepared<'_>, cause: &Arc<Candidate>, residual: &[f64]) -> 
 }
 
 /// What every law of one number does by simulation, against what the adjoint says of it.
-fn compared(time: &str, tolerance: f64) {
-    let system = parse(&model(time), "machine.toml", Format::Toml).unwrap();
+fn compared(time: &str, second: &str, tolerance: f64) {
+    let system = parse(&model(time, second), "machine.toml", Format::Toml).unwrap();
     let prepared = Prepared::new(&system, &[record()], 0.7).unwrap();
     let (problem, nominal) = (&prepared.problem, &prepared.nominal);
     let start: &Model = &prepared.start;
@@ -108,19 +110,24 @@ fn compared(time: &str, tolerance: f64) {
 
 #[test]
 fn sums_of_outputs_are_followed_back_from_sample_to_sample() {
-    compared("discrete", 1e-4);
+    compared("discrete", SPEED, 1e-4);
 }
 
 #[test]
 fn sums_of_outputs_are_followed_back_through_the_steps_of_an_integrator() {
     // what enters is held over a sample, which a law inside the steps is not
-    compared("continuous", 0.03);
+    compared("continuous", SPEED, 0.03);
+}
+
+#[test]
+fn sums_of_an_accelerometer_are_followed_back() {
+    compared("continuous", "u - k*x - 0.8*v - x^3", 0.03);
 }
 
 /// What a curve of several numbers does by simulation, against what the adjoint says of it.
 #[test]
 fn several_laws_explain_their_score_statistic() {
-    let system = parse(&model("discrete"), "machine.toml", Format::Toml).unwrap();
+    let system = parse(&model("discrete", SPEED), "machine.toml", Format::Toml).unwrap();
     let prepared = Prepared::new(&system, &[record()], 0.7).unwrap();
     let (problem, nominal) = (&prepared.problem, &prepared.nominal);
     let start: &Model = &prepared.start;

@@ -11,7 +11,7 @@ use crate::replay::Pass;
 /// Mean and covariance of all augmented states (first) and outputs of a frozen path, by writing
 /// every sample as a linear function of the independent noises.
 pub fn joint(path: &Path, noise: &Noise) -> (DVector<f64>, DMatrix<f64>) {
-    let layout = Layout::of(path.n, noise);
+    let layout = Layout::of(path, noise);
     let (na, n, ny, nf) = (layout.len(), path.n, path.outputs, path.forces);
     let len = path.len;
     let sources = na + len * (nf + na - n + ny);
@@ -29,7 +29,7 @@ pub fn joint(path: &Path, noise: &Noise) -> (DVector<f64>, DMatrix<f64>) {
         rows.rows_mut(k * na, na).copy_from(&x);
         for o in 0..ny {
             let mut row = vec![0.0; na];
-            layout.row(path.c(k, o), o, &mut row);
+            layout.row(path.rows(k, o), o, &mut row);
             let mut y = DMatrix::from_row_slice(1, na, &row) * &x;
             y[(0, next)] += noise.measurement[o].sqrt();
             next += 1;
@@ -40,7 +40,7 @@ pub fn joint(path: &Path, noise: &Noise) -> (DVector<f64>, DMatrix<f64>) {
             for j in 0..n {
                 f[(i, j)] = path.a(k)[i * n + j];
             }
-            for (l, &c) in layout.slow.iter().enumerate() {
+            for (l, &c) in layout.forces.iter().enumerate() {
                 f[(i, n + l)] = path.g(k)[i * nf + c];
             }
         }
@@ -56,7 +56,7 @@ pub fn joint(path: &Path, noise: &Noise) -> (DVector<f64>, DMatrix<f64>) {
                 x[(i, sources)] -= path.g(k)[i * nf + c] * path.force[k * nf + c];
             }
         }
-        for c in 0..nf {
+        for c in (0..nf).filter(|_| layout.lets_white_in()) {
             for i in 0..n {
                 x[(i, next)] += path.g(k)[i * nf + c] * noise.white[c].sqrt();
             }
@@ -92,11 +92,10 @@ pub fn noisy(len: usize) -> (Path, Noise) {
     (path, noise)
 }
 
-#[test]
-fn the_likelihood_is_the_multivariate_normal_density() {
-    let (path, noise) = noisy(14);
+/// Asserts that the likelihood of a path is the multivariate normal density.
+pub fn is_the_normal_density((path, noise): (Path, Noise)) {
     let (mean, covariance) = joint(&path, &noise);
-    let states = path.len * Layout::of(path.n, &noise).len();
+    let states = path.len * Layout::of(&path, &noise).len();
     let kept: Vec<usize> = (0..path.e.len()).filter(|&i| path.e[i].is_finite()).collect();
     let part = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
         covariance[(states + kept[i], states + kept[j])]
@@ -117,6 +116,11 @@ fn the_likelihood_is_the_multivariate_normal_density() {
     for (at, white) in kept.iter().zip(whitened.iter()) {
         assert!((pass.z[*at] - white).abs() < 1e-6, "{} {white}", pass.z[*at]);
     }
+}
+
+#[test]
+fn the_likelihood_is_the_multivariate_normal_density() {
+    is_the_normal_density(noisy(14));
 }
 
 #[test]
@@ -180,7 +184,7 @@ fn slopes_of_the_likelihood_are_those_of_differences() {
     let (path, noise) = noisy(60);
     let along = noise.components();
     assert_eq!(along.len(), 6);
-    let mut pass = Pass::new(&path, Layout::of(path.n, &noise), false);
+    let mut pass = Pass::new(&path, Layout::of(&path, &noise), false);
     pass.forward(&path, &noise);
     let mut slopes = vec![0.0; along.len()];
     pass.gradient(&path, &noise, &along, &mut slopes);

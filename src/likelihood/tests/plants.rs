@@ -18,6 +18,18 @@ channels = [{ name = "on_mass", unit = "N", into = [{ state = "v", gain = "1/m" 
 coordinates = [{ name = "place", unit = "m", value = "p" }, { name = "rate", unit = "m/s", value = "v", quantity = "velocity" }]
 "#;
 
+/// The same with an accelerometer and no other sensor.
+pub const ACCELEROMETER: &str = r#"
+sampling_time = 0.05
+[model.equations]
+inputs = [{ name = "force", unit = "N" }]
+states = [{ name = "p", unit = "m", derivative = "v" }, { name = "v", unit = "m/s", derivative = "(force - k*p - c*v)/m" }]
+outputs = [{ name = "acceleration", unit = "m/s^2", value = "(force - k*p - c*v)/m" }]
+parameters = [{ name = "m", value = 1.0, min = 0.0 }, { name = "k", value = 4.0 }, { name = "c", value = 0.4 }]
+channels = [{ name = "on_mass", unit = "N", into = [{ state = "v", gain = "1/m" }] }]
+coordinates = [{ name = "place", unit = "m", value = "p" }, { name = "rate", unit = "m/s", value = "v", quantity = "velocity" }]
+"#;
+
 /// A slide that is pushed, without a spring: an integrator with speed measured too.
 pub const SLIDE: &str = r#"
 sampling_time = 0.02
@@ -123,12 +135,17 @@ pub fn simulate_by(
         for o in 0..ny {
             wander[o] += get(&sizes.wander, o) * random.normal();
             seen[o] = y[o] + wander[o] + get(&sizes.measurement, o) * random.normal();
-            outputs[o].push(seen[o]);
         }
         let mut w = vec![0.0; nf];
         for c in 0..nf {
             slow[c] += get(&sizes.slow, c) * random.normal();
             w[c] = slow[c] + get(&sizes.white, c) * random.normal();
+        }
+        let mut direct = vec![0.0; ny * nf];
+        plant.direct(&mut direct);
+        for o in 0..ny {
+            seen[o] += (0..nf).map(|c| direct[o * nf + c] * w[c]).sum::<f64>();
+            outputs[o].push(seen[o]);
         }
         let mut to = plant.jacobian();
         let mut next = x.clone();

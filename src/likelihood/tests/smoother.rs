@@ -10,7 +10,7 @@ use crate::replay::Pass;
 fn smoothed_states_solve_the_normal_equations() {
     let (path, noise) = noisy(14);
     let (mean, covariance) = joint(&path, &noise);
-    let na = Layout::of(path.n, &noise).len();
+    let na = Layout::of(&path, &noise).len();
     let states = path.len * na;
     let kept: Vec<usize> = (0..path.e.len()).filter(|&i| path.e[i].is_finite()).collect();
     let at = |i: usize| states + kept[i];

@@ -8,7 +8,7 @@ use crate::{Noise, Predictor};
 
 fn pass(path: &crate::path::Path, noise: &Noise) -> (f64, Vec<f64>, usize) {
     let along = noise.components();
-    let mut pass = Pass::new(path, Layout::of(path.n, noise), false);
+    let mut pass = Pass::new(path, Layout::of(path, noise), false);
     pass.forward(path, noise);
     let mut slopes = vec![0.0; along.len()];
     pass.gradient(path, noise, &along, &mut slopes);

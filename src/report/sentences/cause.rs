@@ -44,7 +44,7 @@ pub fn cause(cause: &Cause) -> String {
 /// cause that is stated by several numbers, or by a shape, counts as told.
 pub fn is_resolved(cause: &Cause) -> bool {
     let wording = &cause.wording;
-    if wording.shape.is_some() || wording.fault.is_some() {
+    if wording.shape.is_some() || wording.fault.is_some() || wording.is_limit {
         return true;
     }
     let stated = match wording.size {

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! with the k of [`OutputEquations::rates`](super::super::balances::OutputEquations::rates). The
-//! disturbance of a filter is held over a sample and has no part in it.
+//! disturbance of a filter is held over a sample: it carries its slopes into what is observed, and no value.
 
 use super::Run;
 use crate::model::{Ask, Block};
@@ -21,6 +21,10 @@ impl<R: EffectNumber> Run<'_, R> {
         }
         self.u_in.copy_from_slice(&self.u[0]);
         self.w.copy_from_slice(&self.ramp);
+        if let Some([into_w, into_u]) = &self.noise {
+            add(&mut self.w, into_w);
+            add(&mut self.u_in, into_u);
+        }
         for group in self.groups.iter_mut().filter(|group| group.inside) {
             let packs = group.places();
             let seen = [&self.theta_now, &self.derived, &self.x, &self.u[0]];

@@ -152,6 +152,10 @@ impl<'a> Transition<'a> {
     /// parameters, where wanted).
     pub fn observe(&mut self, k: usize, y: &mut [f64], c: &mut [f64], theta: &mut [f64]) {
         let drive = self.drive;
+        // what enters is told apart from what is read without it
+        for to in self.run.noise.iter_mut().flatten().flatten() {
+            to.value = F64x8::constant(0.0);
+        }
         self.run.begin(drive, k, self.end, 0);
         let (n, ny) = (self.states(), self.run.base.sizes.y);
         for o in 0..ny {
@@ -163,6 +167,15 @@ impl<'a> Transition<'a> {
             for o in 0..ny {
                 slopes(&self.run.y, (ny, o), first, &mut theta[o * nt..][..nt]);
             }
+        }
+    }
+
+    /// The derivatives of the outputs that were observed last along what enters own channels and inputs,
+    /// row by row: of outputs that read rates, 0 for others.
+    pub fn direct(&self, d: &mut [f64]) {
+        let (forces, ny) = (self.forces(), self.run.base.sizes.y);
+        for o in 0..ny {
+            slopes(&self.run.y, (ny, o), self.states(), &mut d[o * forces..][..forces]);
         }
     }
 
