@@ -8,10 +8,10 @@ use lacuna::file::{Format, parse};
 use lacuna::likelihood::Predictor;
 
 use super::arm;
-use super::hard_plants::{later, states_later};
+use super::hard_plants::later;
 
 /// A mass on a spring, of which the acceleration is measured.
-const MASS: &str = r#"
+pub const MASS: &str = r#"
 sampling_time = 0.01
 integrator = { method = "rk4", substeps = 4 }
 [model.equations]
@@ -34,7 +34,7 @@ coordinates = [
 "#;
 
 /// A record with a further force on the mass, and 0.05 m/s^2 of noise.
-fn record(seed: u64, force: impl Fn(f64, f64) -> f64) -> Record {
+pub fn record(seed: u64, force: impl Fn(f64, f64) -> f64) -> Record {
     const N: usize = 4000;
     let (drawn, error) =
         (noise::white(N, 12.0, seed).unwrap(), noise::white(N, 0.05, seed + 1).unwrap());
@@ -97,65 +97,4 @@ fn the_missing_force_is_shown_by_an_accelerometer() {
     let second = missing[0].explained_by[1].share;
     assert!(first.share > 0.5 && second < 0.1, "{} {second}", first.share);
     assert!((force.rms - 0.57).abs() < 0.15, "{}", force.rms);
-}
-
-/// A quarter of a car: the sensor is on the body, which the input does not reach at once.
-const CAR: &str = r#"
-sampling_time = 0.002
-integrator = { method = "rk4", substeps = 4 }
-[model.equations]
-inputs  = [{ name = "road", unit = "m" }]
-states  = [
-  { name = "s",  unit = "m",   derivative = "vs" },
-  { name = "u",  unit = "m",   derivative = "vu" },
-  { name = "vs", unit = "m/s", derivative = "(k*(u - s) + c*(vu - vs))/m" },
-  { name = "vu", unit = "m/s", derivative = "(kt*(road - u) - k*(u - s) - c*(vu - vs))/mu" },
-]
-outputs = [
-  { name = "body",   unit = "m/s^2", value = "(k*(u - s) + c*(vu - vs))/m" },
-  { name = "travel", unit = "m",     value = "u - s" },
-]
-parameters = [
-  { name = "m",  value = 300.0,    unit = "kg",    min = 0.0 },
-  { name = "mu", value = 40.0,     unit = "kg",    min = 0.0 },
-  { name = "k",  value = 18000.0,  unit = "N/m",   min = 0.0 },
-  { name = "c",  value = 1200.0,   unit = "N s/m", min = 0.0 },
-  { name = "kt", value = 180000.0, unit = "N/m",   min = 0.0 },
-]
-channels    = [{ name = "suspension", unit = "N", into = [{ state = "vs", gain = "1/m" }, { state = "vu", gain = "-1/mu" }] }]
-coordinates = [
-  { name = "deflection", unit = "m",   value = "u - s",   quantity = "position" },
-  { name = "rate",       unit = "m/s", value = "vu - vs", quantity = "velocity" },
-]
-"#;
-
-#[test]
-fn friction_of_a_suspension_is_named_by_an_accelerometer_on_the_body() {
-    const N: usize = 4000;
-    let drawn = noise::white(N, 1.2, 11).unwrap();
-    let (e_body, e_travel) =
-        (noise::white(N, 0.02, 12).unwrap(), noise::white(N, 2e-5, 13).unwrap());
-    let ([mut rate, mut road], mut x) = ([0.0, 0.0], [0.0; 4]);
-    let (mut input, mut body, mut travel) = (vec![], vec![], vec![]);
-    for k in 0..N {
-        rate = 0.97 * rate + 0.03 * drawn[k];
-        road += 0.002 * (rate - 0.3 * road);
-        let moved = |[s, u, vs, vu]: [f64; 4]| {
-            let force = 18000.0 * (u - s) + 1200.0 * (vu - vs) + 60.0 * ((vu - vs) / 0.001).tanh();
-            [vs, vu, force / 300.0, (180_000.0 * (road - u) - force) / 40.0]
-        };
-        input.push(road);
-        body.push(moved(x)[2] + e_body[k]);
-        travel.push(x[1] - x[0] + e_travel[k]);
-        x = states_later(x, 0.002, moved);
-    }
-    let record = Record::new(0.002).input("road", input).unwrap();
-    let record = record.output("body", body).unwrap().output("travel", travel).unwrap();
-    let finding = arm::diagnosed(CAR, &record);
-    println!("{}", lacuna::report::sentences::summary(&finding));
-    let [cause] = &finding.causes[..] else { panic!("{:?}", finding.causes.len()) };
-    assert_eq!((&cause.effect[..], &cause.into[..]), ("coulomb_friction", "suspension"));
-    let level = &cause.parameters[0];
-    assert!((level.value - 60.0).abs() < 4.0 * level.std_error.unwrap(), "{level:?}");
-    assert!(finding.after.test["body"].rmse < 0.022);
 }

@@ -23,4 +23,5 @@ mod plan;
 mod report;
 mod said;
 mod shapeless;
+mod vehicles;
 mod written_effect;

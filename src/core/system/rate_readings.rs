@@ -65,7 +65,7 @@ impl<'a> Readings<'a> {
         if let Some(state) = self.anywhere.row(output, self.sizes.x + self.sizes.u) {
             return vec![(state, 1.0)];
         }
-        let k = self.beside_kinematics(output);
+        let k = self.with_kinematics(output);
         let Some(k) = k.or_else(|| self.anywhere.rate(output).filter(|_| reached)) else {
             return vec![];
         };
@@ -79,7 +79,7 @@ impl<'a> Readings<'a> {
     }
 
     /// k with dh/dtheta = k df/dtheta, where there is one and none of it is negative.
-    fn beside_kinematics(&self, output: usize) -> Option<DVector<f64>> {
+    fn with_kinematics(&self, output: usize) -> Option<DVector<f64>> {
         let first = &self.points[0];
         let enters = |p: usize| {
             let slopes = along(self.law, self.sizes, Ask::Derivative, first, p);
@@ -147,8 +147,11 @@ impl Rows {
                 reads.row_mut(k).fill(0.0);
             }
         }
-        let values = changing(&moves).1.singular_values();
-        let unique = !values.is_empty() && values.min() > UNIQUE * values.max();
+        let (changing, scaled) = changing(&moves);
+        let unique = !changing.is_empty() && {
+            let values = scaled.singular_values();
+            values.min() > UNIQUE * values.max()
+        };
         Self { moves, reads, unique }
     }
 
@@ -172,8 +175,11 @@ impl Rows {
     fn solve(&self, output: usize) -> Option<DVector<f64>> {
         let row = self.reads.column(output).into_owned();
         let (lengths, scaled) = changing(&self.moves);
-        let of_changing = scaled.svd(true, true).solve(&row, f64::EPSILON).ok()?;
         let mut k = DVector::zeros(self.moves.ncols());
+        if lengths.is_empty() {
+            return (row.norm() == 0.0).then_some(k);
+        }
+        let of_changing = scaled.svd(true, true).solve(&row, f64::EPSILON).ok()?;
         for ((state, length), own) in lengths.into_iter().zip(of_changing.iter()) {
             k[state] = own / length;
         }

@@ -144,8 +144,7 @@ pub enum ColumnFault {
     SamplingTime(f64),
 }
 
-/// What a sentence about a cause needs beside its numbers: words of the plug-in, and conventions of
-/// sign.
+/// What a sentence about a cause needs beside its numbers: the plug-in's words, conventions of sign.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Wording {
     /// What the effect calls itself at this place: `Dry friction`.

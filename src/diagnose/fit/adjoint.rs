@@ -16,25 +16,15 @@ use std::ops::Range;
 
 use rayon::prelude::*;
 
+use super::course::{AT_ONCE, Course, Slopes};
 use crate::data::Random;
 use crate::fit::problem::{Grain, Model, Part, Problem};
 use crate::statistics::{dot, project};
 use crate::system::{Jacobian, Lane, Plan, Transition};
 use crate::watch::Watch;
 
-/// Samples after which it is asked whether to stop, and those that one thread follows along parameters.
-const AT_ONCE: usize = 128;
+/// Samples that one thread follows along parameters.
 const BLOCK: usize = 256;
-
-/// Derivatives of one sample, row by row.
-#[derive(PartialEq)]
-struct Slopes {
-    a: Vec<f64>,
-    g: Vec<f64>,
-    c: Vec<f64>,
-    /// Empty where no output reads rates.
-    d: Vec<f64>,
-}
 
 /// What is known about a model that laws are asked about.
 pub(crate) struct About<'a> {
@@ -74,15 +64,6 @@ pub(crate) struct Adjoint {
     pub(super) total: f64,
 }
 
-/// A model's course with its derivatives.
-struct Course {
-    slopes: Vec<Slopes>,
-    /// Which of them holds at each sample.
-    at: Vec<usize>,
-    states: Vec<Vec<f64>>,
-    n: usize,
-}
-
 impl Adjoint {
     /// The adjoint about a model; `None` where derivatives take more than there is room for, the model
     /// cannot be followed, or somebody asks to stop.
@@ -93,17 +74,17 @@ impl Adjoint {
         watch: &dyn Watch,
     ) -> Option<Self> {
         let job = problem.job(about.model, Grain::Coarse)?;
+        let mut course = Course::of(problem, (&job.plan, &job.lane), of.room, watch)?;
         let mut own = Self {
-            seen: vec![vec![]; job.plan.sources.entries.len()],
+            seen: std::mem::take(&mut course.seen),
             samples: problem.simulated(),
-            begins: vec![],
+            begins: std::mem::take(&mut course.begins),
             forces: job.plan.sizes.w + job.plan.sizes.u,
             sums: of.signs + 1,
             weights: vec![],
             parameters: None,
             total: 0.0,
         };
-        let course = own.forward(problem, (&job.plan, &job.lane), of.room, watch)?;
         let rho = own.weighted(problem, about);
         let lambda = own.backward(problem, &course, &rho, watch)?;
         if of.parameters {
@@ -112,58 +93,6 @@ impl Adjoint {
                 Some(own.along_parameters(problem, model, (&course, &lambda, &rho), watch)?);
         }
         Some(own)
-    }
-
-    /// Follows the model.
-    fn forward(
-        &mut self,
-        problem: &Problem<'_>,
-        (plan, lane): (&Plan, &Lane),
-        room: usize,
-        watch: &dyn Watch,
-    ) -> Option<Course> {
-        let drive = problem.fit_drive();
-        let given = (&lane.theta[..], &lane.effect_values[..]);
-        let mut along = Transition::new(problem.system, plan, drive, given, false)?;
-        let (n, ny) = (along.states(), problem.y.len());
-        let mut to = along.jacobian();
-        let (mut c, mut y) = (vec![0.0; ny * n], vec![0.0; ny]);
-        let direct = !problem.base.output_equations.rates.is_empty();
-        let mut d = vec![0.0; if direct { ny * self.forces } else { 0 }];
-        let (still, mut seen) = (vec![0.0; self.forces], vec![0.0; self.seen.len()]);
-        let mut course = Course { slopes: vec![], at: vec![], states: vec![], n };
-        let bytes = 8 * (to.a.len() + to.g.len() + c.len() + d.len());
-        for (number, segment) in drive.segments.iter().enumerate() {
-            self.begins.push(course.at.len());
-            along.start(number);
-            let mut x = lane.starts.get(number).or(lane.starts.last())?.clone();
-            x.resize(n, 0.0);
-            for k in segment.clone() {
-                if k % AT_ONCE == 0 && watch.stopped() {
-                    return None;
-                }
-                course.states.push(x.clone());
-                along.place(&x);
-                along.observe(k, &mut y, &mut c, &mut []);
-                if direct {
-                    along.direct(&mut d);
-                }
-                along.see(&mut seen);
-                self.seen.iter_mut().zip(&seen).for_each(|(to, v)| to.push(*v));
-                along.advance(k, &still, &mut x, &mut to);
-                let (a, g) = (to.a.clone(), to.g.clone());
-                let now = Slopes { a, g, c: c.clone(), d: d.clone() };
-                // those of a linear model are the same all along
-                if course.slopes.last() != Some(&now) {
-                    course.slopes.push(now);
-                }
-                course.at.push(course.slopes.len() - 1);
-                if course.slopes.len() * bytes > room || !x.iter().all(|x| x.is_finite()) {
-                    return None;
-                }
-            }
-        }
-        Some(course)
     }
 
     /// Weights rho of all sums, sample by sample: outputs, and for each the sums.

@@ -5,6 +5,7 @@ pub(crate) mod affordable;
 pub(crate) mod allowing;
 pub(crate) mod block_jacobian;
 pub(crate) mod collinear;
+mod course;
 pub(crate) mod covariance;
 pub(crate) mod efficient;
 pub(crate) mod explained;

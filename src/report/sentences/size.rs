@@ -134,3 +134,19 @@ pub fn formula(terms: &[(f64, String)]) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::diagnose::{Cause, Value};
+    use crate::sentences::cause::is_resolved;
+
+    #[test]
+    fn half_of_a_signal_is_missing_where_its_limit_is_0() {
+        let (name, unit) = ("low".into(), "V".into());
+        let low = Value { name, value: 2e-4, std_error: Some(3e-4), unit };
+        let mut cause = Cause { parameters: vec![low], ..Cause::default() };
+        assert!(!is_resolved(&cause));
+        cause.wording.is_limit = true;
+        assert!(is_resolved(&cause));
+    }
+}

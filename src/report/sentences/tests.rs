@@ -160,10 +160,6 @@ fn parameters_with_their_change_and_sizes_that_are_none() {
         text.contains("of a size that this record does not tell from none (180 +- 200 N/m)"),
         "{text}"
     );
-    let mut limit =
-        law("Saturation", "u", Some("u"), Site::Input, vec![value("low", 2e-4, 3e-4, "V")]);
-    limit.wording.is_limit = true;
-    assert!(is_resolved(&limit), "half of a signal is missing where its limit is 0");
     let mut traded = none.clone();
     traded.parameters.push(value("start", 0.3, 0.1, "m"));
     traded.probability = Some(0.99);
