@@ -33,22 +33,31 @@ coordinates = [
 ]
 "#;
 
+/// Samples of a record.
+pub const N: usize = 4000;
+
+/// White noise of this size, smoothed twice.
+pub fn smooth(size: f64, shares: [f64; 2], seed: u64) -> Vec<f64> {
+    let (mut first, mut second) = (0.0, 0.0);
+    let smoothed = noise::white(N, size, seed).unwrap().into_iter().map(|e| {
+        first += shares[0] * (e - first);
+        second += shares[1] * (first - second);
+        second
+    });
+    smoothed.collect()
+}
+
 /// A record with a further force on the mass, and 0.05 m/s^2 of noise.
 pub fn record(seed: u64, force: impl Fn(f64, f64) -> f64) -> Record {
-    const N: usize = 4000;
-    let (drawn, error) =
-        (noise::white(N, 12.0, seed).unwrap(), noise::white(N, 0.05, seed + 1).unwrap());
-    let ([mut first, mut f], mut x) = ([0.0, 0.0], [0.0, 0.0]);
-    let (mut input, mut read) = (vec![], vec![]);
-    for (e, error) in drawn.iter().zip(&error) {
-        first += 0.25 * (e - first);
-        f += 0.4 * (first - f);
+    let (pushed, error) =
+        (smooth(12.0, [0.25, 0.4], seed), noise::white(N, 0.05, seed + 1).unwrap());
+    let (mut x, mut read) = ([0.0, 0.0], vec![]);
+    for (&f, error) in pushed.iter().zip(&error) {
         let acceleration = |[p, v]: [f64; 2]| f - 100.0 * p - 0.8 * v + force(p, v);
-        input.push(f);
         read.push(acceleration(x) + error);
         x = later(x, 0.01, acceleration);
     }
-    Record::new(0.01).input("F", input).unwrap().output("a", read).unwrap()
+    Record::new(0.01).input("F", pushed).unwrap().output("a", read).unwrap()
 }
 
 fn diagnosed(record: &Record) -> Finding {

@@ -6,6 +6,7 @@
 use lacuna::data::{Record, noise};
 use lacuna::diagnose::Finding;
 
+use super::accelerometer::{N, smooth};
 use super::hard_plants::states_later;
 use super::{accelerometer, arm};
 
@@ -74,19 +75,6 @@ coordinates = [
   { name = "sideways",   unit = "m/s", value = "v", quantity = "velocity" },
 ]
 "#;
-
-const N: usize = 4000;
-
-/// White noise of this size, smoothed twice.
-fn smooth(size: f64, shares: [f64; 2], seed: u64) -> Vec<f64> {
-    let (mut first, mut second) = (0.0, 0.0);
-    let smoothed = noise::white(N, size, seed).unwrap().into_iter().map(|e| {
-        first += shares[0] * (e - first);
-        second += shares[1] * (first - second);
-        second
-    });
-    smoothed.collect()
-}
 
 /// A rough road, and what the suspension pushes beside spring and damper.
 fn car(seed: u64, force: impl Fn(f64, f64) -> f64) -> Record {
@@ -269,6 +257,7 @@ fn rates() {
             seconds.push(finding.seconds);
         }
         seconds.sort_by(f64::total_cmp);
+        let within = if hidden.truth.is_some() { within.to_string() } else { "-".into() };
         println!(
             "| {} | {} | {first} of {seeds} | {alone} | {within} | {:.1} |",
             hidden.plant,

@@ -67,7 +67,7 @@ pub(crate) fn follow(
     let given = (&model.theta[..], &effect_values[..]);
     let mut plant = Transition::new(system, &model.plan, drive, given, wanted.theta)?;
     let (n, nf, ny) = (plant.states(), plant.forces(), noise.measurement.len());
-    let direct = !model.plan.output_equations.rates.is_empty();
+    let direct = model.plan.output_equations.reads_rates();
     let layout = Layout::new(n, direct, noise);
     let len = drive.len();
     let nt = if wanted.theta { model.theta.len() } else { 0 };

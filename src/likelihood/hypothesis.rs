@@ -191,7 +191,13 @@ impl Predictor {
             for _ in 0..DAMPINGS {
                 let damped = &scaled + DMatrix::identity(m, m) * damping;
                 let slope = sums.slope.component_div(&size);
-                let step = damped.lu().solve(&slope).map(|s| -s.component_div(&size));
+                let step = damped.lu().solve(&slope).map(|s| -s);
+                // what a quadratic of these slopes promises (Dennis and Schnabel, 1983, section 6.4)
+                let promised = step.as_ref().map(|s| -slope.dot(s) - 0.5 * s.dot(&(&scaled * s)));
+                if promised.is_some_and(|gain| gain < SETTLED) {
+                    break;
+                }
+                let step = step.map(|step| step.component_div(&size));
                 let next = step.map(|step| self.stepped(&best, step.as_slice()));
                 let tried = next.and_then(|next| self.evaluated(next).ok());
                 if let Some((next, path)) = tried

@@ -47,9 +47,12 @@ impl OutputEquations {
         }
         found
     }
-}
 
-impl OutputEquations {
+    /// Whether any output reads rates of states.
+    pub fn reads_rates(&self) -> bool {
+        !self.rates.is_empty()
+    }
+
     /// Adds to outputs that are rates what makes the rates of the states `with` out of `without`; all pack
     /// by pack, of as many states and outputs as there are.
     pub fn add_rates<R: LaneNumber>(&self, sizes: Sizes, y: &mut [R], [with, without]: [&[R]; 2]) {

@@ -48,7 +48,7 @@ impl Course {
         let (n, ny) = (along.states(), problem.y.len());
         let mut to = along.jacobian();
         let (mut c, mut y) = (vec![0.0; ny * n], vec![0.0; ny]);
-        let direct = !problem.base.output_equations.rates.is_empty();
+        let direct = problem.base.output_equations.reads_rates();
         let (forces, sources) = (along.forces(), plan.sources.entries.len());
         let mut d = vec![0.0; if direct { ny * forces } else { 0 }];
         let (still, mut seen) = (vec![0.0; forces], vec![0.0; sources]);

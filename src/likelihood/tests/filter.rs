@@ -179,11 +179,10 @@ fn a_linear_plant_gets_the_kalman_filter() {
     );
 }
 
-#[test]
-fn slopes_of_the_likelihood_are_those_of_differences() {
-    let (path, noise) = noisy(60);
+/// Asserts that the slopes of a path's likelihood along so many variances are those of differences.
+pub fn slopes_are_of_differences((path, noise): (Path, Noise), components: usize) {
     let along = noise.components();
-    assert_eq!(along.len(), 6);
+    assert_eq!(along.len(), components);
     let mut pass = Pass::new(&path, Layout::of(&path, &noise), false);
     pass.forward(&path, &noise);
     let mut slopes = vec![0.0; along.len()];
@@ -201,6 +200,11 @@ fn slopes_of_the_likelihood_are_those_of_differences() {
             "{component:?} {slope} {difference}"
         );
     }
+}
+
+#[test]
+fn slopes_of_the_likelihood_are_those_of_differences() {
+    slopes_are_of_differences(noisy(60), 6);
 }
 
 #[test]

@@ -19,16 +19,10 @@ coordinates = [{ name = "place", unit = "m", value = "p" }, { name = "rate", uni
 "#;
 
 /// The same with an accelerometer and no other sensor.
-pub const ACCELEROMETER: &str = r#"
-sampling_time = 0.05
-[model.equations]
-inputs = [{ name = "force", unit = "N" }]
-states = [{ name = "p", unit = "m", derivative = "v" }, { name = "v", unit = "m/s", derivative = "(force - k*p - c*v)/m" }]
-outputs = [{ name = "acceleration", unit = "m/s^2", value = "(force - k*p - c*v)/m" }]
-parameters = [{ name = "m", value = 1.0, min = 0.0 }, { name = "k", value = 4.0 }, { name = "c", value = 0.4 }]
-channels = [{ name = "on_mass", unit = "N", into = [{ state = "v", gain = "1/m" }] }]
-coordinates = [{ name = "place", unit = "m", value = "p" }, { name = "rate", unit = "m/s", value = "v", quantity = "velocity" }]
-"#;
+pub fn accelerometer() -> String {
+    let sensor = r#"{ name = "acceleration", unit = "m/s^2", value = "(force - k*p - c*v)/m" }"#;
+    OSCILLATOR.replace(r#"{ name = "position", unit = "m", value = "p" }"#, sensor)
+}
 
 /// A slide that is pushed, without a spring: an integrator with speed measured too.
 pub const SLIDE: &str = r#"

@@ -16,7 +16,7 @@ impl<R: EffectNumber> Run<'_, R> {
     /// Adds to the present outputs what effects add to the rates that they read.
     pub(super) fn add_to_rates(&mut self) {
         let (base, n) = (self.base, self.base.sizes);
-        if base.output_equations.rates.is_empty() || !self.inside {
+        if !base.output_equations.reads_rates() || !self.inside {
             return;
         }
         self.u_in.copy_from_slice(&self.u[0]);

@@ -181,7 +181,7 @@ impl<'a, R: EffectNumber> Room<'a, R> {
     fn add_to_rates(&mut self, none: &[R], time: R, later: f64, y: &mut [R]) {
         let n = self.made.plan.sizes;
         let inside = |slot: &Slot| enters(self.made, slot).0;
-        if self.made.plan.output_equations.rates.is_empty()
+        if !self.made.plan.output_equations.reads_rates()
             || !self.made.plan.slots.iter().any(inside)
         {
             return;
