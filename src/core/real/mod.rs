@@ -18,6 +18,7 @@
 mod dual;
 #[doc(hidden)]
 pub mod elementary;
+mod forward;
 #[cfg(target_arch = "x86_64")]
 mod fuse;
 #[doc(hidden)]
@@ -30,6 +31,7 @@ mod outlined;
 mod reverse;
 mod rules;
 mod scalar;
+mod straight_line;
 mod tape;
 mod trace;
 #[cfg(target_arch = "x86_64")]
@@ -40,9 +42,11 @@ pub use dual::Dual;
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
 pub use self::{
+    forward::Forward,
     isa::{Isa, recast},
     lanes::{F32x16, F64x8, InRegisters, Lanes},
-    reverse::{Leaf, Reverse},
+    reverse::Reverse,
+    straight_line::Leaf,
     tape::{Binary, Given, Line, Node, Tape, Term, Unary},
     trace::Trace,
 };

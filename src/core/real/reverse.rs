@@ -8,26 +8,10 @@
 //! that was given, whatever their number (the cheap gradient principle: Griewank and Walther,
 //! Evaluating Derivatives, 2nd ed., 2008, ch. 3 and 4). Kinks follow the rule of dual numbers.
 
-use super::tape::{Binary, Given, Node, Tape, Term, Unary};
+use super::straight_line::{Leaf, Op, StraightLine, each_binary, each_unary};
+use super::tape::{Binary, Node, Tape, Unary};
 use super::{Dual, InRegisters, Real};
 use crate::per_lanes;
-
-/// One operation; operands are numbers of leaves and of operations before it.
-#[derive(Debug, Clone, Copy)]
-enum Op {
-    One(Unary, u32),
-    Two(Binary, u32, u32),
-    Choice(u32, u32, u32),
-}
-
-/// What a recorded computation begins with.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Leaf {
-    /// A constant.
-    Constant(f64),
-    /// Something given from outside.
-    Given(Given),
-}
 
 /// A tape made ready for sweeps: what its results are made of, leaves first.
 ///
@@ -52,12 +36,7 @@ pub enum Leaf {
 /// assert!((slopes[0].0[0] - slope).abs() < 1e-15);
 /// ```
 #[derive(Debug, Clone)]
-pub struct Reverse {
-    leaves: Vec<Leaf>,
-    ops: Vec<Op>,
-    /// The number of each result; none where it is a constant.
-    roots: Vec<Option<u32>>,
-}
+pub struct Reverse(StraightLine);
 
 impl Reverse {
     /// Packs of numbers that one sweep takes together: value `p` of number `i` stands at
@@ -67,57 +46,19 @@ impl Reverse {
     /// Sweeps over what some results are made of, a constant being `None`; `None` where a delay line
     /// is among it, which a single step does not know.
     pub fn of(tape: &Tape, results: &[Option<Node>]) -> Option<Self> {
-        let terms = tape.terms();
-        let mut needed = vec![false; terms.len()];
-        results.iter().flatten().for_each(|&node| needed[node as usize] = true);
-        for i in (0..terms.len()).rev() {
-            if needed[i] {
-                terms[i].operands().for_each(|operand| needed[operand as usize] = true);
-            }
-        }
-        let mut leaves = vec![];
-        let mut number = vec![0_u32; terms.len()];
-        for (i, term) in terms.iter().enumerate().filter(|(i, _)| needed[*i]) {
-            let leaf = match *term {
-                Term::Constant(bits) => Leaf::Constant(f64::from_bits(bits)),
-                Term::Given(given) => Leaf::Given(given),
-                _ => continue,
-            };
-            number[i] = leaves.len() as u32;
-            leaves.push(leaf);
-        }
-        let mut ops = vec![];
-        for (i, term) in terms.iter().enumerate().filter(|(i, _)| needed[*i]) {
-            let at = |node: Node| number[node as usize];
-            let op = match *term {
-                Term::Constant(_) | Term::Given(_) => continue,
-                Term::One(function, a) => Op::One(function, at(a)),
-                Term::Two(function, a, b) => Op::Two(function, at(a), at(b)),
-                Term::Choice(a, b, c) => Op::Choice(at(a), at(b), at(c)),
-                Term::PastHeld { .. } | Term::PastLine { .. } => return None,
-            };
-            number[i] = (leaves.len() + ops.len()) as u32;
-            ops.push(op);
-        }
-        let roots = results.iter().map(|node| node.map(|node| number[node as usize])).collect();
-        Some(Self { leaves, ops, roots })
+        StraightLine::of(tape, results).map(Self)
     }
 
     /// What it begins with: the first numbers.
     pub fn leaves(&self) -> &[Leaf] {
-        &self.leaves
-    }
-
-    /// Leaves and operations.
-    fn count(&self) -> usize {
-        self.leaves.len() + self.ops.len()
+        &self.0.leaves
     }
 
     /// Room for the values of all numbers and for their slopes, constants filled in.
     pub fn room<R: InRegisters>(&self) -> [Vec<R>; 2] {
-        let zeros = || vec![R::constant(0.0); self.count() * Self::PACKS];
+        let zeros = || vec![R::constant(0.0); self.0.count() * Self::PACKS];
         let mut values = zeros();
-        for (leaf, values) in self.leaves.iter().zip(values.chunks_exact_mut(Self::PACKS)) {
+        for (leaf, values) in self.0.leaves.iter().zip(values.chunks_exact_mut(Self::PACKS)) {
             if let Leaf::Constant(value) = leaf {
                 values.fill(R::constant(*value));
             }
@@ -127,24 +68,24 @@ impl Reverse {
 
     /// Computes all values, those of the leaves being given.
     pub fn forward<R: InRegisters>(&self, values: &mut [R]) {
-        forward(&self.ops, self.leaves.len(), values);
+        forward(&self.0.ops, self.0.leaves.len(), values);
     }
 
     /// Packs of a result whose values are there; `None` where it is a constant.
     pub fn result<'r, R>(&self, values: &'r [R], number: usize) -> Option<&'r [R]> {
-        self.roots[number].map(|root| &values[root as usize * Self::PACKS..][..Self::PACKS])
+        self.0.roots[number].map(|root| &values[root as usize * Self::PACKS..][..Self::PACKS])
     }
 
     /// The slopes of the sum of all results, each times its weight (laid out as the values), along
     /// every leaf. Slopes have to be 0 before; those of the leaves have to be set to 0 by whoever has read
     /// them, all others are.
     pub fn back<R: InRegisters>(&self, values: &[R], slopes: &mut [R], weights: &[R]) {
-        for (root, weights) in self.roots.iter().zip(weights.chunks_exact(Self::PACKS)) {
+        for (root, weights) in self.0.roots.iter().zip(weights.chunks_exact(Self::PACKS)) {
             let Some(root) = root else { continue };
             let to = slopes[*root as usize * Self::PACKS..].iter_mut();
             to.zip(weights).for_each(|(to, &weight)| *to += weight);
         }
-        backward(&self.ops, self.leaves.len(), values, slopes);
+        backward(&self.0.ops, self.0.leaves.len(), values, slopes);
     }
 }
 
@@ -183,18 +124,6 @@ fn add<R: Real>(slopes: &mut [R], to: u32, weight: [R; N], slope: [R; N]) {
     }
 }
 
-/// One arm for each function, so that each is compiled as itself.
-macro_rules! each {
-    ($function:expr, $kind:ident: $($name:ident),* => $with:ident $work:expr) => {
-        match $function {
-            $($kind::$name => {
-                const $with: $kind = $kind::$name;
-                $work
-            })*
-        }
-    };
-}
-
 per_lanes! {
     /// All values after the leaves'.
     fn forward[; R](ops: &[Op], leaves: usize, values: &mut [R]) {
@@ -202,13 +131,11 @@ per_lanes! {
             let value = match *op {
                 Op::One(f, a) => {
                     let x = packs(values, a);
-                    each!(f, Unary: Negative, Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh, Tanh, Exp,
-                        Ln, Sqrt, Abs, Signum => F map(x, F))
+                    each_unary!(f, F => map(x, F))
                 }
                 Op::Two(f, a, b) => {
                     let (x, y) = (packs(values, a), packs(values, b));
-                    each!(f, Binary: Add, Subtract, Multiply, Divide, Atan2, Min, Max, Power
-                        => F join(x, y, F))
+                    each_binary!(f, F => join(x, y, F))
                 }
                 Op::Choice(at, yes, no) => {
                     let (mut at, yes, no) = (packs(values, at), packs(values, yes), packs(values, no));
@@ -261,8 +188,7 @@ per_lanes! {
                 }
                 Op::One(f, a) => {
                     let x = packs(values, a);
-                    let slope = each!(f, Unary: Negative, Sin, Cos, Tan, Asin, Acos, Atan, Sinh, Cosh,
-                        Tanh, Exp, Ln, Sqrt, Abs, Signum => F slope_of(x, F));
+                    let slope = each_unary!(f, F => slope_of(x, F));
                     add(slopes, a, weight, slope);
                 }
                 Op::Two(Binary::Add, a, b) => {
@@ -280,8 +206,7 @@ per_lanes! {
                 }
                 Op::Two(f, a, b) => {
                     let (x, y) = (packs(values, a), packs(values, b));
-                    let [along_a, along_b] = each!(f, Binary: Add, Subtract, Multiply, Divide, Atan2, Min,
-                        Max, Power => F slopes_of(x, y, F));
+                    let [along_a, along_b] = each_binary!(f, F => slopes_of(x, y, F));
                     add(slopes, a, weight, along_a);
                     add(slopes, b, weight, along_b);
                 }

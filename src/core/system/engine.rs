@@ -2,6 +2,8 @@
 
 mod rates;
 mod recorded;
+mod replayed;
+mod simulated;
 mod tracks;
 mod transition;
 

@@ -174,7 +174,7 @@ impl System {
             fixed,
             sampling_time: plan.sampling_time,
             substeps: plan.substeps,
-            ramps: plan.hold == Hold::First,
+            ramps: plan.hold == Hold::First || self.model.ramped(),
             ..recorded
         })
     }

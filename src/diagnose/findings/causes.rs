@@ -18,6 +18,7 @@ use crate::fit::problem::Added;
 use crate::validate::false_discovery::{either, on_test};
 use crate::validate::noise_floor::Floor;
 use crate::validate::test_error::{Scored, TestData, removed};
+use crate::watch::Watch;
 
 /// Spikes below this number and this share are chance.
 const SPIKES: usize = 3;
@@ -35,6 +36,8 @@ pub(crate) struct Scores<'a> {
     pub firsts: &'a [usize],
     /// Whether the joined records are records, of which each may show a cause or not.
     pub several: bool,
+    /// Says whether somebody asks to stop: what is refitted then ends where it has come to.
+    pub watch: &'a dyn Watch,
 }
 
 impl Context<'_, '_> {
@@ -80,7 +83,7 @@ impl Context<'_, '_> {
         let model = &chosen.fitted.model;
         let only = model.added.len() == own.len() && chosen.moved.is_empty();
         let bare = (by.several || !only)
-            .then(|| self.refitted(chosen, &model.without_all(&own)))
+            .then(|| self.refitted(chosen, &model.without_all(&own), by.watch))
             .flatten();
         let without = match bare.as_ref().filter(|_| !only) {
             Some(bare) => Some(by.test.score(&extended(self.problem, bare)?)?),

@@ -25,7 +25,7 @@ use crate::fit::covariance::Precision;
 use crate::fit::finished::Finished;
 use crate::fit::nuisance::{Key, Nuisance};
 use crate::fit::problem::{Grain, Model, Part};
-use crate::fit::refit::{Fitted, Refit, refit};
+use crate::fit::refit::{Fitted, Refit, Stop, refit_until};
 use crate::prepare::input_dependence::DEPENDS;
 use crate::register;
 use crate::statistics::dot;
@@ -60,9 +60,14 @@ impl Context<'_, '_> {
         let numbers: usize = chosen.fitted.model.added.iter().map(|a| a.cause.unknowns()).sum();
         let left = self.problem.residual(&chosen.y, Part::All);
         let own = worth(&left, numbers + chosen.moved.len());
-        let fitted = refit(self.problem, &nuisance, &models, Refit::last()).into_iter().flatten();
-        let mut models: Vec<(f64, Fitted)> =
-            fitted.map(|fitted| (worth(&fitted.residuals, 1) - own, fitted)).collect();
+        let asked = || from.watch.stopped();
+        let stop = Stop::Discard(&asked);
+        let fitted = refit_until(self.problem, &nuisance, &models, Refit::last(), stop);
+        let mut models: Vec<(f64, Fitted)> = fitted
+            .into_iter()
+            .flatten()
+            .map(|fitted| (worth(&fitted.residuals, 1) - own, fitted))
+            .collect();
         models.retain(|(odds, _)| *odds > LOOK_ALIKE.ln());
         models.sort_by(|a, b| b.0.total_cmp(&a.0));
         let best = models.first()?.0;

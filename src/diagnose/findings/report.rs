@@ -16,13 +16,14 @@ use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::hypothesis::{Moved, Track};
 use crate::fit::problem::{Grain, Model, Part};
-use crate::fit::refit::Refit;
+use crate::fit::refit::{Refit, Stop};
 use crate::prepare::input_dependence::DEPENDS;
 use crate::statistics::{rms, whiteness};
 use crate::validate::false_discovery::false_discovery;
 use crate::validate::gain::gain;
 use crate::validate::noise_floor::NoiseFloor;
 use crate::validate::test_error::Counted;
+use crate::watch::Watch;
 
 /// Share of the removable error that a curve of unknown shape must remove to explain it.
 const EXPLAINED: f64 = 0.8;
@@ -58,6 +59,7 @@ impl Context<'_, '_> {
             floors: &floors,
             firsts: from.firsts,
             several,
+            watch: from.watch,
         };
         let mut causes = self.causes(chosen, &by)?;
         let held = self.held_instead(chosen, from, &mut causes);
@@ -164,11 +166,13 @@ impl Context<'_, '_> {
     }
 
     /// The same model without one of its causes (or parameter changes), refitted.
-    pub fn refitted(&self, chosen: &Finished, model: &Model) -> Option<Model> {
+    pub fn refitted(&self, chosen: &Finished, model: &Model, watch: &dyn Watch) -> Option<Model> {
         let models = std::slice::from_ref(model);
         let mut nuisance = chosen.nuisance.clone();
         nuisance.free.retain(|&(p, _)| !self.is_held(p));
-        chosen.refit(self.problem, &nuisance, models, Refit::last()).swap_remove(0).map(|f| f.model)
+        let asked = || watch.stopped();
+        let how = (Refit::last(), Stop::Keep(&asked));
+        chosen.refit(self.problem, &nuisance, models, how).swap_remove(0).map(|f| f.model)
     }
 
     fn is_held(&self, p: usize) -> bool {

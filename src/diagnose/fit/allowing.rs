@@ -7,7 +7,7 @@ use crate::fit::covariance::Precision;
 use crate::fit::finished::Finished;
 use crate::fit::nuisance::{Key, Nuisance};
 use crate::fit::problem::Added;
-use crate::fit::refit::{Refit, refit};
+use crate::fit::refit::{Refit, Stop, refit};
 use crate::optimise::Settings;
 use crate::statistics::{add_to_basis, project};
 
@@ -83,7 +83,7 @@ impl Tracks<'_, '_> {
         // derivatives where it stands
         let how = Refit { settings: Settings { iterations: 1, ..how.settings }, ..how };
         let models = std::slice::from_ref(model);
-        let fitted = answer.refit(self.problem, &all, models, how).swap_remove(0);
+        let fitted = answer.refit(self.problem, &all, models, (how, Stop::Never)).swap_remove(0);
         let doubted = fitted.and_then(|fitted| Precision::new(self.problem, &all, &fitted));
         Finished { precision: doubted.or(answer.precision), ..answer }
     }

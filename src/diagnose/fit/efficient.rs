@@ -19,7 +19,7 @@ use crate::fit::covariance::Precision;
 use crate::fit::finished::Finished;
 use crate::fit::nuisance::{Key, Nuisance, get};
 use crate::fit::problem::{Grain, Model, Part, Problem};
-use crate::fit::refit::{Fitted, MANY, Refit, Stop, refit, refit_whitened};
+use crate::fit::refit::{Fitted, MANY, Refit, Stop, refit_until, refit_whitened};
 
 /// Normal score beyond which the two fits differ: a test of size 1 %.
 const DIFFERENT: f64 = 2.326;
@@ -97,14 +97,14 @@ impl Finished {
         problem: &Problem<'_>,
         nuisance: &Nuisance,
         models: &[Model],
-        how: Refit,
+        (how, stop): (Refit, Stop<'_>),
     ) -> Vec<Option<Fitted>> {
         match &self.by {
             Some(by) => {
                 let filters = vec![by.clone(); models.len()];
-                refit_whitened(problem, nuisance, models, &filters, how, Stop::Never)
+                refit_whitened(problem, nuisance, models, &filters, how, stop)
             }
-            None => refit(problem, nuisance, models, how),
+            None => refit_until(problem, nuisance, models, how, stop),
         }
     }
 }

@@ -10,9 +10,10 @@ use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::nuisance::Key;
 use crate::fit::problem::Model;
-use crate::fit::refit::{Refit, refit};
+use crate::fit::refit::{Refit, Stop, refit_until};
 use crate::validate::false_discovery::{either, on_test};
 use crate::validate::test_error::removed;
+use crate::watch::Watch;
 
 impl Context<'_, '_> {
     /// Parameters that the chosen track moved, as causes.
@@ -25,7 +26,7 @@ impl Context<'_, '_> {
         for moved in &chosen.moved {
             let parameters = &self.problem.base.signals.parameters;
             let Some(p) = parameters.iter().position(|q| q.name == moved.name) else { continue };
-            let back = self.back(chosen, p, moved.from);
+            let back = self.back(chosen, p, moved.from, by.watch);
             let (share, by_test) = match &back {
                 Some(back) => {
                     let scored = by.test.score(&extended(self.problem, back)?)?;
@@ -95,13 +96,16 @@ impl Context<'_, '_> {
     }
 
     /// The chosen model with one parameter where it began, refitted.
-    fn back(&self, chosen: &Finished, p: usize, from: f64) -> Option<Model> {
+    fn back(&self, chosen: &Finished, p: usize, from: f64, watch: &dyn Watch) -> Option<Model> {
         let mut back = chosen.fitted.model.clone();
         back.theta[p] = from;
         let mut nuisance = chosen.nuisance.clone();
         nuisance.free.retain(|&(q, _)| q != p);
         let models = std::slice::from_ref(&back);
-        let fitted = refit(self.problem, &nuisance, models, Refit::last()).swap_remove(0);
+        let asked = || watch.stopped();
+        let stop = Stop::Keep(&asked);
+        let fitted =
+            refit_until(self.problem, &nuisance, models, Refit::last(), stop).swap_remove(0);
         fitted.map(|fitted| fitted.model)
     }
 }

@@ -9,7 +9,7 @@ use crate::candidates::candidate::Candidate;
 use crate::fit::finished::Finished;
 use crate::fit::nuisance::{Key, Nuisance, get, set};
 use crate::fit::problem::{Grain, Model, Problem};
-use crate::fit::refit::{Fitted, Refit};
+use crate::fit::refit::{Fitted, Refit, Stop};
 use crate::optimise::Settings;
 use crate::statistics::dot;
 
@@ -111,7 +111,7 @@ fn ask(problem: &Problem<'_>, chosen: &Finished, sides: &mut [Side]) {
         let nuisance = Nuisance { held: Some(sides[0].key), ..chosen.nuisance.clone() };
         let mut open: Vec<&mut Side> = sides.iter_mut().filter(|side| !side.done).collect();
         let moved: Vec<Model> = open.iter().map(|side| side.moved(model)).collect();
-        let fitted = chosen.refit(problem, &nuisance, &moved, how);
+        let fitted = chosen.refit(problem, &nuisance, &moved, (how, Stop::Never));
         for ((side, moved), fitted) in open.iter_mut().zip(&moved).zip(fitted) {
             let reached = (get(moved, side.key) - get(model, side.key)) / side.half;
             // where nothing can be simulated the number cannot be

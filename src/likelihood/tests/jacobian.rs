@@ -121,3 +121,73 @@ fn a_predictor_without_noise_inside_is_the_free_run() {
         }
     }
 }
+
+const PATHS: &str = r#"
+into = "drive"
+of = "drive"
+effect.gain = { gain = 0.1 }
+[[effects]]
+into = "place"
+of = "place"
+effect.quadratic = { coefficient = 0.3 }
+[[effects]]
+into = "on_load"
+of = "swing"
+effect.hysteresis = { alpha = 2.0, beta = 1.0, gamma = 0.5 }
+[[effects]]
+into = "load"
+of = "time"
+effect.drift = { rate = 0.2 }"#;
+
+const REMEMBERED: &str = r#"
+into = "place"
+of = "place"
+effect.lag = { time_constant = 0.1 }
+[[effects]]
+into = "on_load"
+of = "swing"
+effect.backlash = { width = 0.05 }"#;
+
+/// All that a transition says along its first samples, of a record of so many.
+fn course(system: &System, samples: usize, parameters: bool) -> Vec<f64> {
+    let plan = system.plan(0.02).unwrap();
+    let (theta, effect_values) = (plan.signals.theta(), plan.effect_values());
+    let inputs = vec![excitation(samples, 0.02, 20.0, 2)];
+    let drive = Drive { inputs, segments: vec![0..samples], clocks: vec![3.0] };
+    let given = (&theta[..], &effect_values[..]);
+    let mut of = Transition::new(system, &plan, &drive, given, parameters).unwrap();
+    let (n, nf, ny) = (of.states(), of.forces(), plan.sizes.y);
+    let nt = if parameters { theta.len() } else { 0 };
+    let mut all = vec![];
+    let mut x: Vec<f64> = (0..n).map(|i| 0.3 - 0.2 * i as f64).collect();
+    let mut to = of.jacobian();
+    of.start(0);
+    for k in 0..20 {
+        let (mut y, mut c, mut t) = (vec![0.0; ny], vec![0.0; ny * n], vec![0.0; ny * nt]);
+        let (mut d, mut seen) = (vec![0.0; ny * nf], vec![0.0; plan.sources.entries.len()]);
+        of.place(&x);
+        of.observe(k, &mut y, &mut c, &mut t);
+        of.direct(&mut d);
+        x[0] += 0.01;
+        of.place(&x);
+        of.see(&mut seen);
+        let w: Vec<f64> = (0..nf).map(|i| 0.3 + 0.1 * (i + k) as f64).collect();
+        of.advance(k, &w, &mut x, &mut to);
+        all.extend([&y, &c, &t, &d, &seen, &x, &to.a, &to.g, &to.theta].into_iter().flatten());
+    }
+    all
+}
+
+#[test]
+fn a_long_record_replays_what_a_short_one_simulates() {
+    for effects in [FRICTION, PATHS, REMEMBERED] {
+        let system = with(GANTRY, effects);
+        // along a parameter that drifts only the recorded step has slopes
+        for parameters in [false, effects != PATHS] {
+            let (long, short) = (course(&system, 400, parameters), course(&system, 40, parameters));
+            for (i, (a, b)) in long.iter().zip(&short).enumerate() {
+                assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{effects}\n{i}: {a} {b}");
+            }
+        }
+    }
+}

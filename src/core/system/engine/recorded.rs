@@ -53,18 +53,7 @@ fn step(law: &dyn Law, plan: &Plan, lane: &Lane, parameters: &[usize]) -> Record
 
     recorded.remembered = run.give_states();
     let h = plan.step();
-    for i in 0..plan.sizes.u {
-        let now = Trace::given(Given::Input(i as u32), 0.0);
-        let next = Trace::given(Given::Next(i as u32), 0.0);
-        let begun = Trace::given(Given::Substep, 0.0);
-        for (slot, at) in [0.0, 0.5, 1.0].into_iter().enumerate() {
-            let share = (begun + at) / plan.substeps as f64;
-            run.u[slot][i] = match plan.hold {
-                Hold::Zero => now,
-                Hold::First => now + (next - now) * share,
-            };
-        }
-    }
+    give_inputs(&mut run, plan);
     run.drift(0.0);
     for group in &mut run.groups {
         group.inputs(&mut run.u, h);
@@ -77,21 +66,40 @@ fn step(law: &dyn Law, plan: &Plan, lane: &Lane, parameters: &[usize]) -> Record
     recorded
 }
 
+/// Puts inputs that are given in the place of those of a run, as they are held or move along straight lines.
+pub(super) fn give_inputs(run: &mut Run<'_, Trace>, plan: &Plan) {
+    for i in 0..plan.sizes.u {
+        let now = Trace::given(Given::Input(i as u32), 0.0);
+        let next = Trace::given(Given::Next(i as u32), 0.0);
+        let begun = Trace::given(Given::Substep, 0.0);
+        for (slot, at) in [0.0, 0.5, 1.0].into_iter().enumerate() {
+            let share = (begun + at) / plan.substeps as f64;
+            run.u[slot][i] = match plan.hold {
+                Hold::Zero => now,
+                Hold::First => now + (next - now) * share,
+            };
+        }
+        if run.ramped {
+            run.ramp[i] = next - now;
+        }
+    }
+}
+
 /// The term of a number on the tape that is being recorded, also of a constant.
-fn root(value: Trace) -> Node {
+pub(super) fn root(value: Trace) -> Node {
     value.noted().unwrap_or_default()
 }
 
 impl Run<'_, Trace> {
     /// All numbers that are kept from step to step, delay lines apart: the model's states, then
     /// the effects' in the order of [`Group::remembered`](super::super::group::Group::remembered).
-    fn remembered(&mut self) -> Vec<&mut Trace> {
+    pub(super) fn remembered(&mut self) -> Vec<&mut Trace> {
         let own = self.x.iter_mut();
         own.chain(self.groups.iter_mut().flat_map(|group| group.remembered())).collect()
     }
 
     /// Puts what is given in their place.
-    fn give_states(&mut self) -> Vec<Remembered> {
+    pub(super) fn give_states(&mut self) -> Vec<Remembered> {
         let states = &self.base.signals.states;
         let own: Vec<_> = states.iter().map(|s| Some(s.signal.clone())).collect();
         let each = self.remembered().into_iter().enumerate().map(|(i, value)| {

@@ -2,22 +2,19 @@
 //!
 //! x[k+1] = F(x[k], u[k], w[k]; theta), y[k] = h(x[k], u[k]; theta), with A = dF/dx, G = dF/dw,
 //! dF/dtheta, C = dh/dx and dh/dtheta by forward differentiation through the integrator's stages and
-//! through all effects (dual numbers: Griewank and Walther, "Evaluating derivatives", 2008, ch. 3).
-//! One register of dual numbers carries 32 directions, so that a whole Jacobian costs one simulation.
+//! through all effects (Griewank and Walther, "Evaluating Derivatives", 2nd ed., 2008, ch. 3).
 //!
 //! States are those of the model, then those of its effects. w enters the own channels, then the
-//! inputs behind whatever sits in their paths, and is held over the sample. What paths of outputs
-//! and play remember beside states (lag, delay) is taken as known: it has no columns.
+//! inputs behind whatever sits in their paths, and is held over the sample.
 
 use super::super::System;
 use super::super::lane::{Drive, Lane};
 use super::super::plan::Plan;
-use super::Run;
-use crate::model::{Ask, Block, DIRECTIONS, Dual64, LaneNumber, Law};
-use crate::real::{F64x8, Real};
+use super::replayed::Replayed;
+use super::simulated::Simulated;
 
-/// Directions in one pack.
-const IN_PACK: usize = DIRECTIONS * F64x8::LANES;
+/// Samples from which on recording a step takes less time than it saves.
+const WORTH: usize = 100;
 
 /// Derivatives of one transition, row by row.
 #[derive(Debug, Clone, Default)]
@@ -32,14 +29,26 @@ pub struct Jacobian {
 
 /// A system along a record, one sample at a time, with derivatives.
 pub struct Transition<'a> {
-    run: Run<'a, Dual64>,
-    drive: &'a Drive,
-    end: usize,
-    packs: usize,
-    /// Zero with the slopes of the state that it stands for, pack by pack.
-    x: Vec<Dual64>,
-    s: Vec<Dual64>,
-    parameters: bool,
+    way: Way<'a>,
+    states: usize,
+    forces: usize,
+    parameters: usize,
+}
+
+/// How a transition is worked out: by its recorded step, or by simulating it.
+enum Way<'a> {
+    Replayed(Box<Replayed<'a>>),
+    Simulated(Box<Simulated<'a>>),
+}
+
+/// Calls the same method either way.
+macro_rules! either {
+    ($way:expr, $of:ident => $call:expr) => {
+        match $way {
+            Way::Replayed($of) => $call,
+            Way::Simulated($of) => $call,
+        }
+    };
 }
 
 impl<'a> Transition<'a> {
@@ -51,199 +60,86 @@ impl<'a> Transition<'a> {
         (theta, effect_values): (&[f64], &[f64]),
         parameters: bool,
     ) -> Option<Self> {
-        let n = plan.sizes;
-        let (states, forces) = (n.x + plan.states, n.w + n.u);
-        let directions = states + forces + if parameters { n.theta } else { 0 };
-        let packs = directions.div_ceil(IN_PACK).max(1);
         let lane = Lane {
             theta: theta.to_vec(),
             effect_values: effect_values.to_vec(),
             ..Lane::default()
         };
-        // a lane for every place: every one carries other directions of the same run
-        let lanes = vec![lane; packs * F64x8::LANES];
-        let law: &dyn Law = system.model.as_ref();
-        let mut run = Run::<Dual64>::new(law, &[(plan, &lanes)])?;
-        (run.inside, run.into_inputs) = (true, true);
-        let blank = |count: usize| vec![Dual64::constant(0.0); packs * count];
-        let mut noise = [blank(n.w), blank(n.u)];
-        let mut transition = Self {
-            drive,
-            end: 0,
-            packs,
-            x: blank(n.x),
-            s: blank(plan.states),
-            parameters,
-            run: {
-                run.groups.iter_mut().for_each(|group| group.inside = true);
-                run
-            },
+        let law = system.model.as_ref();
+        let is_worth = drive.len() >= WORTH;
+        let record = || Replayed::new(law, (plan, drive), &lane, parameters);
+        let way = match is_worth.then(record).flatten() {
+            Some(replayed) => Way::Replayed(Box::new(replayed)),
+            None => {
+                Way::Simulated(Box::new(Simulated::new(law, (plan, drive), &lane, parameters)?))
+            }
         };
-        let mut first = 0;
-        sloped(&mut transition.x, n.x, &mut first);
-        sloped(&mut transition.s, plan.states, &mut first);
-        sloped(&mut noise[0], n.w, &mut first);
-        sloped(&mut noise[1], n.u, &mut first);
-        transition.run.noise = Some(noise);
-        transition.run.drift(0.0);
-        if parameters {
-            sloped(&mut transition.run.theta_now, n.theta, &mut first);
-            transition.run.sloped = true;
-            transition.derive();
-        }
-        Some(transition)
+        Some(Self::of(way, plan, parameters))
     }
 
-    /// What the law derives from parameters, with their slopes.
-    fn derive(&mut self) {
-        let run = &mut self.run;
-        let block = Block {
-            sizes: run.base.sizes,
-            packs: self.packs,
-            theta: &run.theta_now,
-            derived: &[],
-            x: &run.x,
-            u: &run.u[0],
-            w: &run.no_w,
-            time: Dual64::constant(0.0),
-        };
-        if run.base.sizes.derived > 0 {
-            run.law.answer(Ask::Derived, Dual64::call(&block, &mut run.derived));
+    fn of(way: Way<'a>, plan: &Plan, parameters: bool) -> Self {
+        let n = plan.sizes;
+        Self {
+            way,
+            states: n.x + plan.states,
+            forces: n.w + n.u,
+            parameters: if parameters { n.theta } else { 0 },
         }
     }
 
     /// States of the model and of its effects.
     pub fn states(&self) -> usize {
-        self.run.base.sizes.x + self.run.base.states
+        self.states
     }
 
     /// Own channels and inputs.
     pub fn forces(&self) -> usize {
-        self.run.base.sizes.w + self.run.base.sizes.u
+        self.forces
     }
 
     /// Room for the Jacobians.
     pub fn jacobian(&self) -> Jacobian {
-        let n = self.states();
-        let theta = if self.parameters { self.run.base.sizes.theta } else { 0 };
+        let n = self.states;
         Jacobian {
             a: vec![0.0; n * n],
-            g: vec![0.0; n * self.forces()],
-            theta: vec![0.0; n * theta],
+            g: vec![0.0; n * self.forces],
+            theta: vec![0.0; n * self.parameters],
         }
     }
 
     /// Goes to the start of a segment.
     pub fn start(&mut self, segment: usize) {
-        self.run.clock = self.drive.clocks.get(segment).copied().unwrap_or(0.0);
-        self.end = self.drive.segments[segment].end;
-        self.run.groups.iter_mut().for_each(super::Group::restart);
-        self.run.first = true;
+        either!(&mut self.way, way => way.start(segment));
     }
 
     /// Puts the states where the filter has them.
     pub fn place(&mut self, x: &[f64]) {
-        let nx = self.run.base.sizes.x;
-        put(&mut self.run.x, &self.x, &x[..nx]);
-        put(&mut self.run.groups[0].s, &self.s, &x[nx..]);
+        either!(&mut self.way, way => way.place(x));
     }
 
     /// The outputs at sample `k` and, row by row, their derivatives along the states (and along the
     /// parameters, where wanted).
     pub fn observe(&mut self, k: usize, y: &mut [f64], c: &mut [f64], theta: &mut [f64]) {
-        let drive = self.drive;
-        // what enters is told apart from what is read without it
-        for to in self.run.noise.iter_mut().flatten().flatten() {
-            to.value = F64x8::constant(0.0);
-        }
-        self.run.begin(drive, k, self.end, 0);
-        let (n, ny) = (self.states(), self.run.base.sizes.y);
-        for o in 0..ny {
-            y[o] = self.run.y[o].lane(0);
-            slopes(&self.run.y, (ny, o), 0, &mut c[o * n..][..n]);
-        }
-        if self.parameters {
-            let (nt, first) = (self.run.base.sizes.theta, n + self.forces());
-            for o in 0..ny {
-                slopes(&self.run.y, (ny, o), first, &mut theta[o * nt..][..nt]);
-            }
-        }
+        either!(&mut self.way, way => way.observe(k, y, c, theta));
     }
 
     /// The derivatives of the outputs that were observed last along what enters own channels and inputs,
     /// row by row: of outputs that read rates, 0 for others.
     pub fn direct(&self, d: &mut [f64]) {
-        let (forces, ny) = (self.forces(), self.run.base.sizes.y);
-        for o in 0..ny {
-            slopes(&self.run.y, (ny, o), self.states(), &mut d[o * forces..][..forces]);
-        }
+        either!(&self.way, way => way.direct(d));
     }
 
     /// Everything that effects could depend on, at the present state: the table of sources.
     pub fn see(&mut self, seen: &mut [f64]) {
-        let run = &mut self.run;
-        let now = [&run.theta_now, &run.derived, &run.x, &run.u[0]];
-        let group = &mut run.groups[0];
-        let at = group.instant(run.law, now, run.time);
-        for (to, from) in seen.iter_mut().zip(group.table(&at)) {
-            *to = from.lane(0);
-        }
+        either!(&mut self.way, way => way.see(seen));
     }
 
     /// The states at the next sample under forces `w`, and the derivatives.
     pub fn advance(&mut self, k: usize, w: &[f64], x: &mut [f64], to: &mut Jacobian) {
-        let (drive, base) = (self.drive, self.run.base);
-        let (n, nx, nw) = (self.states(), base.sizes.x, base.sizes.w);
-        if let Some([into_w, into_u]) = &mut self.run.noise {
-            for (all, w) in [(into_w, &w[..nw]), (into_u, &w[nw..])] {
-                for pack in all.chunks_exact_mut(w.len().max(1)) {
-                    pack.iter_mut().zip(w).for_each(|(to, &w)| to.value = F64x8::constant(w));
-                }
-            }
-        }
-        self.run.finish();
-        for j in 1..base.substeps {
-            self.run.begin(drive, k, self.end, j);
-            self.run.finish();
-        }
-        self.run.groups[0].forget_slopes();
-        let (forces, nt) = (self.forces(), to.theta.len() / n.max(1));
-        for i in 0..n {
-            let (all, at) = match i < nx {
-                true => (&self.run.x, (nx, i)),
-                false => (&self.run.groups[0].s, (base.states, i - nx)),
-            };
-            x[i] = all[at.1].lane(0);
-            slopes(all, at, 0, &mut to.a[i * n..][..n]);
-            slopes(all, at, n, &mut to.g[i * forces..][..forces]);
-            slopes(all, at, n + forces, &mut to.theta[i * nt..][..nt]);
-        }
+        either!(&mut self.way, way => way.advance(k, w, x, to));
     }
 }
 
-/// Gives `n` values per pack the slopes of the directions from `first` on.
-fn sloped(values: &mut [Dual64], n: usize, first: &mut usize) {
-    for i in 0..n {
-        let d = *first + i;
-        let (pack, lane, slope) = (d / IN_PACK, d % IN_PACK / DIRECTIONS, d % DIRECTIONS);
-        values[pack * n + i].slope[slope].0[lane] = 1.0;
-    }
-    *first += n;
-}
-
-/// Writes values into all packs, each with its own slopes.
-fn put(to: &mut [Dual64], slopes: &[Dual64], values: &[f64]) {
-    let n = values.len().max(1);
-    for (i, (to, with)) in to.iter_mut().zip(slopes).enumerate() {
-        *to = Dual64 { value: F64x8::constant(values[i % n]), slope: with.slope };
-    }
-}
-
-/// Reads the slopes of value `i` of `n` along the directions from `first` on.
-fn slopes(values: &[Dual64], (n, i): (usize, usize), first: usize, to: &mut [f64]) {
-    for (j, to) in to.iter_mut().enumerate() {
-        let d = first + j;
-        let (pack, lane, slope) = (d / IN_PACK, d % IN_PACK / DIRECTIONS, d % DIRECTIONS);
-        *to = values[pack * n + i].slope[slope].0[lane];
-    }
-}
+#[cfg(test)]
+#[path = "transition_tests.rs"]
+mod tests;

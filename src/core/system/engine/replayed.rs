@@ -1,0 +1,308 @@
+//! A transition that is recorded once and replayed sample by sample.
+//!
+//! One step of the integrator, with all that enters it, is written down as a straight-line program; a
+//! filter then runs that program with its slopes, in the place of the simulation with its calls from stage to
+//! stage. Values and slopes are the same: what is recorded is the simulation itself.
+//! Source: Griewank and Walther, Evaluating Derivatives, 2nd ed., 2008, sections 3.1 and 6.1.
+
+use super::super::lane::{Drive, Lane};
+use super::super::plan::Plan;
+use super::transition::Jacobian;
+use super::{Run, recorded};
+use crate::model::Law;
+use crate::real::{Forward, Given, Leaf, Node, Tape, Trace};
+
+/// Directions up to which a program is replayed: beyond them its slopes outgrow the processor's cache.
+const MOST: usize = 64;
+/// Registers of slopes of all its numbers up to which it is: half a megabyte.
+const REGISTERS: usize = 8192;
+
+/// Terms of what a filter asks for.
+struct Asked {
+    outputs: Vec<Node>,
+    sources: Vec<Node>,
+    next: Vec<Node>,
+    /// Values of the parameters that are given.
+    theta: Vec<f64>,
+}
+
+/// A recorded transition along a record.
+pub(super) struct Replayed<'a> {
+    plan: &'a Plan,
+    drive: &'a Drive,
+    states: usize,
+    forces: usize,
+    parameters: usize,
+    observed: Program,
+    seen: Program,
+    next: Program,
+    /// Pairs of a next state and the leaf of that state.
+    onward: Vec<(usize, usize)>,
+    x: Vec<f64>,
+    clock: f64,
+    end: usize,
+    sample: usize,
+}
+
+impl<'a> Replayed<'a> {
+    /// Records the transition of a lane; `None` where something is remembered beside states, or the program
+    /// is so large that a simulation is faster.
+    pub fn new(
+        law: &dyn Law,
+        (plan, drive): (&'a Plan, &'a Drive),
+        lane: &Lane,
+        wants_parameters: bool,
+    ) -> Option<Self> {
+        let n = plan.sizes;
+        let (states, forces) = (n.x + plan.states, n.w + n.u);
+        let parameters = if wants_parameters { n.theta } else { 0 };
+        let directions = states + forces + parameters;
+        // an exact step is worked out before the run, from parameters without slopes
+        if directions > MOST || plan.linear && wants_parameters {
+            return None;
+        }
+        let (asked, tape) = Tape::record(|| asked(law, plan, lane, parameters));
+        let asked = asked?;
+        let sizes = Sizes { states, forces, parameters };
+        let program = |results: &[Node], directions| Program::of(&tape, results, directions, sizes);
+        let next = program(&asked.next, directions)?;
+        let onward = (0..states).filter_map(|i| Some((i, next.leaf(Given::State(i as u32))?)));
+        let onward = onward.collect();
+        let mut replayed = Self {
+            observed: program(&asked.outputs, directions)?,
+            seen: program(&asked.sources, 0)?,
+            onward,
+            next,
+            plan,
+            drive,
+            states,
+            forces,
+            parameters,
+            x: vec![0.0; states],
+            clock: 0.0,
+            end: 0,
+            sample: 0,
+        };
+        for program in [&mut replayed.observed, &mut replayed.seen, &mut replayed.next] {
+            program.give_parameters(&asked.theta);
+        }
+        Some(replayed)
+    }
+
+    pub fn start(&mut self, segment: usize) {
+        self.clock = self.drive.clocks.get(segment).copied().unwrap_or(0.0);
+        self.end = self.drive.segments[segment].end;
+    }
+
+    pub fn place(&mut self, x: &[f64]) {
+        self.x.copy_from_slice(x);
+    }
+
+    pub fn observe(&mut self, k: usize, y: &mut [f64], c: &mut [f64], theta: &mut [f64]) {
+        self.sample = k;
+        let program = &mut self.observed;
+        program.give(self.plan, self.drive, (k, self.end), self.clock);
+        program.give_states(&self.x);
+        program.forward.run();
+        let (n, nt) = (self.states, self.parameters);
+        for (o, y) in y.iter_mut().enumerate() {
+            *y = program.forward.value(o);
+            program.forward.slopes(o, 0, &mut c[o * n..][..n]);
+            if nt > 0 {
+                program.forward.slopes(o, n + self.forces, &mut theta[o * nt..][..nt]);
+            }
+        }
+    }
+
+    pub fn direct(&self, d: &mut [f64]) {
+        for (o, d) in d.chunks_exact_mut(self.forces.max(1)).enumerate() {
+            self.observed.forward.slopes(o, self.states, d);
+        }
+    }
+
+    pub fn see(&mut self, seen: &mut [f64]) {
+        let program = &mut self.seen;
+        program.give(self.plan, self.drive, (self.sample, self.end), self.clock);
+        program.give_states(&self.x);
+        program.forward.run();
+        for (i, seen) in seen.iter_mut().enumerate() {
+            *seen = program.forward.value(i);
+        }
+    }
+
+    pub fn advance(&mut self, k: usize, w: &[f64], x: &mut [f64], to: &mut Jacobian) {
+        let (plan, program) = (self.plan, &mut self.next);
+        program.give(plan, self.drive, (k, self.end), self.clock);
+        program.give_states(&self.x);
+        program.seed_states();
+        program.give_forces(w);
+        for step in 0..plan.substeps {
+            if step > 0 {
+                program.forward.hand_on(&self.onward);
+                program.give_step(
+                    self.clock + (k as f64 * plan.sampling_time + step as f64 * plan.step()),
+                    step,
+                );
+            }
+            program.forward.run();
+        }
+        let (n, forces, nt) = (self.states, self.forces, self.parameters);
+        for (i, x) in x.iter_mut().enumerate() {
+            *x = program.forward.value(i);
+            program.forward.slopes(i, 0, &mut to.a[i * n..][..n]);
+            program.forward.slopes(i, n, &mut to.g[i * forces..][..forces]);
+            program.forward.slopes(i, n + forces, &mut to.theta[i * nt..][..nt]);
+        }
+    }
+}
+
+/// How many of what the directions of a program are, in their order. What is recorded as given has the
+/// parameters first, then the forces.
+#[derive(Clone, Copy)]
+struct Sizes {
+    states: usize,
+    forces: usize,
+    parameters: usize,
+}
+
+/// A recorded answer, with the leaves that what is given goes to.
+struct Program {
+    forward: Forward,
+    given: Vec<(Given, usize)>,
+    sizes: Sizes,
+}
+
+impl Program {
+    fn of(tape: &Tape, results: &[Node], directions: usize, sizes: Sizes) -> Option<Self> {
+        let nodes: Vec<Option<Node>> = results.iter().copied().map(Some).collect();
+        let forward = Forward::of(tape, &nodes, directions)?;
+        let leaves = forward.leaves().iter().enumerate();
+        let given = leaves.filter_map(|(i, leaf)| match leaf {
+            Leaf::Given(given) => Some((*given, i)),
+            Leaf::Constant(_) => None,
+        });
+        let given: Vec<(Given, usize)> = given.collect();
+        let starts = given.iter().any(|(given, _)| *given == Given::Started);
+        if starts || forward.registers() > REGISTERS {
+            return None;
+        }
+        let mut program = Self { forward, given, sizes };
+        if directions > 0 {
+            program.seed_states();
+            program.seed_rest();
+        }
+        Some(program)
+    }
+
+    fn leaf(&self, of: Given) -> Option<usize> {
+        self.given.iter().find(|(given, _)| *given == of).map(|(_, leaf)| *leaf)
+    }
+
+    fn seed_states(&mut self) {
+        for &(given, leaf) in &self.given {
+            if let Given::State(i) = given {
+                self.forward.seed(leaf, i as usize);
+            }
+        }
+    }
+
+    fn seed_rest(&mut self) {
+        let Sizes { states, forces, parameters } = self.sizes;
+        for &(given, leaf) in &self.given {
+            let Given::Parameter(i) = given else { continue };
+            let direction = match (i as usize).checked_sub(parameters) {
+                Some(force) => states + force,
+                None => states + forces + i as usize,
+            };
+            self.forward.seed(leaf, direction);
+        }
+    }
+
+    fn give_parameters(&mut self, theta: &[f64]) {
+        for &(given, leaf) in &self.given {
+            if let Given::Parameter(i) = given
+                && let Some(&value) = theta.get(i as usize)
+            {
+                self.forward.give(leaf, value);
+            }
+        }
+    }
+
+    fn give_forces(&mut self, w: &[f64]) {
+        for &(given, leaf) in &self.given {
+            if let Given::Parameter(i) = given
+                && let Some(force) = (i as usize).checked_sub(self.sizes.parameters)
+            {
+                self.forward.give(leaf, w[force]);
+            }
+        }
+    }
+
+    fn give_states(&mut self, x: &[f64]) {
+        for &(given, leaf) in &self.given {
+            if let Given::State(i) = given {
+                self.forward.give(leaf, x[i as usize]);
+            }
+        }
+    }
+
+    /// Inputs of a sample, and its first step.
+    fn give(&mut self, plan: &Plan, drive: &Drive, (k, end): (usize, usize), clock: f64) {
+        let next = if k + 1 < end { k + 1 } else { k };
+        for &(given, leaf) in &self.given {
+            match given {
+                Given::Input(i) => self.forward.give(leaf, drive.inputs[i as usize][k]),
+                Given::Next(i) => self.forward.give(leaf, drive.inputs[i as usize][next]),
+                _ => {}
+            }
+        }
+        self.give_step(clock + k as f64 * plan.sampling_time, 0);
+    }
+
+    fn give_step(&mut self, time: f64, step: usize) {
+        for &(given, leaf) in &self.given {
+            match given {
+                Given::Time => self.forward.give(leaf, time),
+                Given::Substep => self.forward.give(leaf, step as f64),
+                _ => {}
+            }
+        }
+    }
+}
+
+/// Writes down a step: the first `parameters` of the model are given, then what enters own channels and inputs.
+fn asked(law: &dyn Law, plan: &Plan, lane: &Lane, parameters: usize) -> Option<Asked> {
+    let groups = [(plan, std::slice::from_ref(lane))];
+    let mut run = Run::<Trace>::new(law, &groups)?;
+    let (states, n) = (plan.sizes.x + plan.states, plan.sizes);
+    (run.inside, run.into_inputs) = (true, true);
+    run.groups.iter_mut().for_each(|group| group.inside = true);
+    for (i, value) in run.theta.iter_mut().enumerate().take(parameters) {
+        *value = Trace::given(Given::Parameter(i as u32), value.value());
+    }
+    run.theta_now.copy_from_slice(&run.theta);
+    let theta = run.theta[..parameters].iter().map(|value| value.value()).collect();
+    let force = |i: usize| Trace::given(Given::Parameter((parameters + i) as u32), 0.0);
+    let (into_w, into_u) = ((0..n.w).map(force), (n.w..n.w + n.u).map(force));
+    run.noise = Some([into_w.collect(), into_u.collect()]);
+    run.start(&groups, 0);
+    if run.give_states().len() != states {
+        return None;
+    }
+    recorded::give_inputs(&mut run, plan);
+    let h = plan.step();
+    run.drift(0.0);
+    for group in &mut run.groups {
+        group.inputs(&mut run.u, h);
+    }
+    run.output(h);
+    let roots = |values: &[Trace]| values.iter().map(|&value| recorded::root(value)).collect();
+    let outputs = roots(&run.y);
+    let now = [&run.theta_now, &run.derived, &run.x, &run.u[0]];
+    let group = &mut run.groups[0];
+    let at = group.instant(run.law, now, 0.0);
+    let sources = roots(&group.table(&at));
+    run.advance(h);
+    let next: Vec<Trace> = run.remembered().into_iter().map(|value| *value).collect();
+    Some(Asked { outputs, sources, next: roots(&next), theta })
+}

@@ -1,0 +1,206 @@
+//! A transition by the simulation itself, with dual numbers in the place of plain ones.
+//!
+//! One register of dual numbers carries 32 directions, so that a whole Jacobian costs one simulation.
+//! What paths of outputs and play remember beside states (lag, delay) is taken as known: it has no columns.
+
+use super::super::lane::{Drive, Lane};
+use super::super::plan::Plan;
+use super::Run;
+use super::transition::Jacobian;
+use crate::model::{Ask, Block, DIRECTIONS, Dual64, LaneNumber, Law};
+use crate::real::{F64x8, Real};
+
+/// Directions in one pack.
+const IN_PACK: usize = DIRECTIONS * F64x8::LANES;
+
+/// A system along a record, one sample at a time, with derivatives.
+pub(super) struct Simulated<'a> {
+    run: Run<'a, Dual64>,
+    drive: &'a Drive,
+    end: usize,
+    packs: usize,
+    /// Zero with the slopes of the state that it stands for, pack by pack.
+    x: Vec<Dual64>,
+    s: Vec<Dual64>,
+    parameters: bool,
+}
+
+impl<'a> Simulated<'a> {
+    /// A law and a record; `parameters` says whether derivatives along them are wanted.
+    pub fn new(
+        law: &'a dyn Law,
+        (plan, drive): (&'a Plan, &'a Drive),
+        lane: &Lane,
+        parameters: bool,
+    ) -> Option<Self> {
+        let n = plan.sizes;
+        let (states, forces) = (n.x + plan.states, n.w + n.u);
+        let directions = states + forces + if parameters { n.theta } else { 0 };
+        let packs = directions.div_ceil(IN_PACK).max(1);
+        // a lane for every place: every one carries other directions of the same run
+        let lanes = vec![lane.clone(); packs * F64x8::LANES];
+        let mut run = Run::<Dual64>::new(law, &[(plan, &lanes)])?;
+        (run.inside, run.into_inputs) = (true, true);
+        let blank = |count: usize| vec![Dual64::constant(0.0); packs * count];
+        let mut noise = [blank(n.w), blank(n.u)];
+        let mut transition = Self {
+            drive,
+            end: 0,
+            packs,
+            x: blank(n.x),
+            s: blank(plan.states),
+            parameters,
+            run: {
+                run.groups.iter_mut().for_each(|group| group.inside = true);
+                run
+            },
+        };
+        let mut first = 0;
+        sloped(&mut transition.x, n.x, &mut first);
+        sloped(&mut transition.s, plan.states, &mut first);
+        sloped(&mut noise[0], n.w, &mut first);
+        sloped(&mut noise[1], n.u, &mut first);
+        transition.run.noise = Some(noise);
+        transition.run.drift(0.0);
+        if parameters {
+            sloped(&mut transition.run.theta_now, n.theta, &mut first);
+            transition.run.sloped = true;
+            transition.derive();
+        }
+        Some(transition)
+    }
+
+    /// What the law derives from parameters, with their slopes.
+    fn derive(&mut self) {
+        let run = &mut self.run;
+        let block = Block {
+            sizes: run.base.sizes,
+            packs: self.packs,
+            theta: &run.theta_now,
+            derived: &[],
+            x: &run.x,
+            u: &run.u[0],
+            w: &run.no_w,
+            time: Dual64::constant(0.0),
+        };
+        if run.base.sizes.derived > 0 {
+            run.law.answer(Ask::Derived, Dual64::call(&block, &mut run.derived));
+        }
+    }
+
+    /// States of the model and of its effects.
+    pub fn states(&self) -> usize {
+        self.run.base.sizes.x + self.run.base.states
+    }
+
+    /// Own channels and inputs.
+    pub fn forces(&self) -> usize {
+        self.run.base.sizes.w + self.run.base.sizes.u
+    }
+
+    pub fn start(&mut self, segment: usize) {
+        self.run.clock = self.drive.clocks.get(segment).copied().unwrap_or(0.0);
+        self.end = self.drive.segments[segment].end;
+        self.run.groups.iter_mut().for_each(super::Group::restart);
+        self.run.first = true;
+    }
+
+    pub fn place(&mut self, x: &[f64]) {
+        let nx = self.run.base.sizes.x;
+        put(&mut self.run.x, &self.x, &x[..nx]);
+        put(&mut self.run.groups[0].s, &self.s, &x[nx..]);
+    }
+
+    pub fn observe(&mut self, k: usize, y: &mut [f64], c: &mut [f64], theta: &mut [f64]) {
+        let drive = self.drive;
+        // what enters is told apart from what is read without it
+        for to in self.run.noise.iter_mut().flatten().flatten() {
+            to.value = F64x8::constant(0.0);
+        }
+        self.run.begin(drive, k, self.end, 0);
+        let (n, ny) = (self.states(), self.run.base.sizes.y);
+        for o in 0..ny {
+            y[o] = self.run.y[o].lane(0);
+            slopes(&self.run.y, (ny, o), 0, &mut c[o * n..][..n]);
+        }
+        if self.parameters {
+            let (nt, first) = (self.run.base.sizes.theta, n + self.forces());
+            for o in 0..ny {
+                slopes(&self.run.y, (ny, o), first, &mut theta[o * nt..][..nt]);
+            }
+        }
+    }
+
+    pub fn direct(&self, d: &mut [f64]) {
+        let (forces, ny) = (self.forces(), self.run.base.sizes.y);
+        for o in 0..ny {
+            slopes(&self.run.y, (ny, o), self.states(), &mut d[o * forces..][..forces]);
+        }
+    }
+
+    pub fn see(&mut self, seen: &mut [f64]) {
+        let run = &mut self.run;
+        let now = [&run.theta_now, &run.derived, &run.x, &run.u[0]];
+        let group = &mut run.groups[0];
+        let at = group.instant(run.law, now, run.time);
+        for (to, from) in seen.iter_mut().zip(group.table(&at)) {
+            *to = from.lane(0);
+        }
+    }
+
+    pub fn advance(&mut self, k: usize, w: &[f64], x: &mut [f64], to: &mut Jacobian) {
+        let (drive, base) = (self.drive, self.run.base);
+        let (n, nx, nw) = (self.states(), base.sizes.x, base.sizes.w);
+        if let Some([into_w, into_u]) = &mut self.run.noise {
+            for (all, w) in [(into_w, &w[..nw]), (into_u, &w[nw..])] {
+                for pack in all.chunks_exact_mut(w.len().max(1)) {
+                    pack.iter_mut().zip(w).for_each(|(to, &w)| to.value = F64x8::constant(w));
+                }
+            }
+        }
+        self.run.finish();
+        for j in 1..base.substeps {
+            self.run.begin(drive, k, self.end, j);
+            self.run.finish();
+        }
+        self.run.groups[0].forget_slopes();
+        let (forces, nt) = (self.forces(), to.theta.len() / n.max(1));
+        for i in 0..n {
+            let (all, at) = match i < nx {
+                true => (&self.run.x, (nx, i)),
+                false => (&self.run.groups[0].s, (base.states, i - nx)),
+            };
+            x[i] = all[at.1].lane(0);
+            slopes(all, at, 0, &mut to.a[i * n..][..n]);
+            slopes(all, at, n, &mut to.g[i * forces..][..forces]);
+            slopes(all, at, n + forces, &mut to.theta[i * nt..][..nt]);
+        }
+    }
+}
+
+/// Gives `n` values per pack the slopes of the directions from `first` on.
+fn sloped(values: &mut [Dual64], n: usize, first: &mut usize) {
+    for i in 0..n {
+        let d = *first + i;
+        let (pack, lane, slope) = (d / IN_PACK, d % IN_PACK / DIRECTIONS, d % DIRECTIONS);
+        values[pack * n + i].slope[slope].0[lane] = 1.0;
+    }
+    *first += n;
+}
+
+/// Writes values into all packs, each with its own slopes.
+fn put(to: &mut [Dual64], slopes: &[Dual64], values: &[f64]) {
+    let n = values.len().max(1);
+    for (i, (to, with)) in to.iter_mut().zip(slopes).enumerate() {
+        *to = Dual64 { value: F64x8::constant(values[i % n]), slope: with.slope };
+    }
+}
+
+/// Reads the slopes of value `i` of `n` along the directions from `first` on.
+fn slopes(values: &[Dual64], (n, i): (usize, usize), first: usize, to: &mut [f64]) {
+    for (j, to) in to.iter_mut().enumerate() {
+        let d = first + j;
+        let (pack, lane, slope) = (d / IN_PACK, d % IN_PACK / DIRECTIONS, d % DIRECTIONS);
+        *to = values[pack * n + i].slope[slope].0[lane];
+    }
+}
