@@ -167,8 +167,10 @@ pub enum Command {
     )]
     Study(Study),
     /// Writes, answers and marks exams of hidden effects, for any tool; tells how sure answers are
-    #[command(after_help = "Example:\n  lacuna exam write exam --config examples/exam/exam.toml\n  \
-        lacuna exam answer exam --out answers\n  lacuna exam mark exam answers --out marks")]
+    #[command(
+        after_help = "Example:\n  lacuna exam write exam --config examples/exam/exam.toml\n  \
+        lacuna exam answer exam --out answers\n  lacuna exam mark exam answers --out marks"
+    )]
     Exam(Exam),
     /// Draws the page of a diagnosis again from what was stored beside it
     #[command(after_help = "Example:\n  lacuna report lacuna-out\n\n\

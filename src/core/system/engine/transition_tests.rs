@@ -1,3 +1,5 @@
+#![allow(clippy::single_range_in_vec_init)] // a record of one segment
+
 use super::*;
 use crate::file::{Format, parse};
 
