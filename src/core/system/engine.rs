@@ -1,5 +1,7 @@
 //! The simulation: groups of lanes, each with its own effects, through one law.
 
+mod jacobian;
+mod program;
 mod rates;
 mod recorded;
 mod replayed;
@@ -20,7 +22,8 @@ use super::plan::Plan;
 use super::sampling::{Hold, Method};
 use super::wiring::EffectNumber;
 
-pub use transition::{Jacobian, Transition};
+pub use jacobian::Jacobian;
+pub use transition::Transition;
 
 /// Magnitude beyond which a state counts as diverged.
 const BEYOND: f64 = 1e150;

@@ -7,16 +7,14 @@
 
 use super::super::lane::{Drive, Lane};
 use super::super::plan::Plan;
-use super::transition::Jacobian;
+use super::jacobian::Jacobian;
+use super::program::{Program, Sizes};
 use super::{Run, recorded};
 use crate::model::Law;
-use crate::real::{Forward, Given, Leaf, Node, Tape, Trace};
+use crate::real::{Given, Node, Tape, Trace};
 
 /// Directions up to which a program is replayed: beyond them its slopes outgrow the processor's cache.
 const MOST: usize = 64;
-/// Registers of slopes of all its numbers up to which it is: half a megabyte.
-const REGISTERS: usize = 8192;
-
 /// Terms of what a filter asks for.
 struct Asked {
     outputs: Vec<Node>,
@@ -152,120 +150,6 @@ impl<'a> Replayed<'a> {
             program.forward.slopes(i, 0, &mut to.a[i * n..][..n]);
             program.forward.slopes(i, n, &mut to.g[i * forces..][..forces]);
             program.forward.slopes(i, n + forces, &mut to.theta[i * nt..][..nt]);
-        }
-    }
-}
-
-/// How many of what the directions of a program are, in their order. What is recorded as given has the
-/// parameters first, then the forces.
-#[derive(Clone, Copy)]
-struct Sizes {
-    states: usize,
-    forces: usize,
-    parameters: usize,
-}
-
-/// A recorded answer, with the leaves that what is given goes to.
-struct Program {
-    forward: Forward,
-    given: Vec<(Given, usize)>,
-    sizes: Sizes,
-}
-
-impl Program {
-    fn of(tape: &Tape, results: &[Node], directions: usize, sizes: Sizes) -> Option<Self> {
-        let nodes: Vec<Option<Node>> = results.iter().copied().map(Some).collect();
-        let forward = Forward::of(tape, &nodes, directions)?;
-        let leaves = forward.leaves().iter().enumerate();
-        let given = leaves.filter_map(|(i, leaf)| match leaf {
-            Leaf::Given(given) => Some((*given, i)),
-            Leaf::Constant(_) => None,
-        });
-        let given: Vec<(Given, usize)> = given.collect();
-        let starts = given.iter().any(|(given, _)| *given == Given::Started);
-        if starts || forward.registers() > REGISTERS {
-            return None;
-        }
-        let mut program = Self { forward, given, sizes };
-        if directions > 0 {
-            program.seed_states();
-            program.seed_rest();
-        }
-        Some(program)
-    }
-
-    fn leaf(&self, of: Given) -> Option<usize> {
-        self.given.iter().find(|(given, _)| *given == of).map(|(_, leaf)| *leaf)
-    }
-
-    fn seed_states(&mut self) {
-        for &(given, leaf) in &self.given {
-            if let Given::State(i) = given {
-                self.forward.seed(leaf, i as usize);
-            }
-        }
-    }
-
-    fn seed_rest(&mut self) {
-        let Sizes { states, forces, parameters } = self.sizes;
-        for &(given, leaf) in &self.given {
-            let Given::Parameter(i) = given else { continue };
-            let direction = match (i as usize).checked_sub(parameters) {
-                Some(force) => states + force,
-                None => states + forces + i as usize,
-            };
-            self.forward.seed(leaf, direction);
-        }
-    }
-
-    fn give_parameters(&mut self, theta: &[f64]) {
-        for &(given, leaf) in &self.given {
-            if let Given::Parameter(i) = given
-                && let Some(&value) = theta.get(i as usize)
-            {
-                self.forward.give(leaf, value);
-            }
-        }
-    }
-
-    fn give_forces(&mut self, w: &[f64]) {
-        for &(given, leaf) in &self.given {
-            if let Given::Parameter(i) = given
-                && let Some(force) = (i as usize).checked_sub(self.sizes.parameters)
-            {
-                self.forward.give(leaf, w[force]);
-            }
-        }
-    }
-
-    fn give_states(&mut self, x: &[f64]) {
-        for &(given, leaf) in &self.given {
-            if let Given::State(i) = given {
-                self.forward.give(leaf, x[i as usize]);
-            }
-        }
-    }
-
-    /// Inputs of a sample, and its first step.
-    fn give(&mut self, plan: &Plan, drive: &Drive, (k, end): (usize, usize), clock: f64) {
-        let next = if k + 1 < end { k + 1 } else { k };
-        for &(given, leaf) in &self.given {
-            match given {
-                Given::Input(i) => self.forward.give(leaf, drive.inputs[i as usize][k]),
-                Given::Next(i) => self.forward.give(leaf, drive.inputs[i as usize][next]),
-                _ => {}
-            }
-        }
-        self.give_step(clock + k as f64 * plan.sampling_time, 0);
-    }
-
-    fn give_step(&mut self, time: f64, step: usize) {
-        for &(given, leaf) in &self.given {
-            match given {
-                Given::Time => self.forward.give(leaf, time),
-                Given::Substep => self.forward.give(leaf, step as f64),
-                _ => {}
-            }
         }
     }
 }

@@ -6,7 +6,7 @@
 use super::super::lane::{Drive, Lane};
 use super::super::plan::Plan;
 use super::Run;
-use super::transition::Jacobian;
+use super::jacobian::Jacobian;
 use crate::model::{Ask, Block, DIRECTIONS, Dual64, LaneNumber, Law};
 use crate::real::{F64x8, Real};
 

@@ -10,22 +10,12 @@
 use super::super::System;
 use super::super::lane::{Drive, Lane};
 use super::super::plan::Plan;
+use super::jacobian::Jacobian;
 use super::replayed::Replayed;
 use super::simulated::Simulated;
 
 /// Samples from which on recording a step takes less time than it saves.
 const WORTH: usize = 100;
-
-/// Derivatives of one transition, row by row.
-#[derive(Debug, Clone, Default)]
-pub struct Jacobian {
-    /// Next states along states.
-    pub a: Vec<f64>,
-    /// Next states along what enters own channels and inputs.
-    pub g: Vec<f64>,
-    /// Next states along parameters, where asked for.
-    pub theta: Vec<f64>,
-}
 
 /// A system along a record, one sample at a time, with derivatives.
 pub struct Transition<'a> {
