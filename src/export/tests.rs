@@ -78,6 +78,32 @@ fn integrators_and_holds_are_those_of_the_simulation() {
     }
 }
 
+/// What `lacuna fit` writes where inputs move along straight lines.
+#[test]
+fn a_fitted_model_under_a_first_order_hold_is_the_simulation() {
+    let baseline = format!(
+        "{{ baseline = {{ system = {{ sampling_time = 0.01, integrator = {{ method = \"rk4\" }}, \
+         hold = \"first\", {} }}, sampling_time = 0.01 }} }}",
+        DUFFING.trim()
+    );
+    let states = (0..2).flat_map(|i| {
+        [
+            format!("{{ to = {{ state = {i} }}, from = {{ block = [0, {i}] }}, value = 1.0 }}"),
+            format!("{{ to = {{ block = [0, {i}] }}, from = {{ state = {i} }}, value = 1.0 }}"),
+        ]
+    });
+    let signals = [
+        "{ to = { output = 0 }, from = { block = [0, 2] }, value = 1.0 }".to_string(),
+        "{ to = { block = [0, 2] }, from = { input = 0 }, value = 1.0 }".to_string(),
+    ];
+    let s: Vec<String> = states.chain(signals).collect();
+    let text = format!(
+        "[model.augmented]\nstates = 2\ninputs = 1\noutputs = 1\nblocks = [{baseline}]\ns = [{}]\n",
+        s.join(", ")
+    );
+    compare("fitted_first", &header(&text));
+}
+
 #[test]
 fn effects_of_every_way_are_the_simulation() {
     let entry = |into: &str, of: &str, effect: &str| {

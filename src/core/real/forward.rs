@@ -44,6 +44,8 @@ pub struct Forward {
     /// Each the same in all lanes.
     values: Vec<F64x8>,
     slopes: Vec<F64x8>,
+    /// Room for what is handed on.
+    handed: Vec<F64x8>,
 }
 
 impl Forward {
@@ -59,7 +61,7 @@ impl Forward {
             }
         }
         let slopes = vec![F64x8::constant(0.0); registers * line.count()];
-        Some(Self { line, registers, values, slopes })
+        Some(Self { line, registers, values, slopes, handed: vec![] })
     }
 
     /// What it begins with.
@@ -86,7 +88,7 @@ impl Forward {
 
     /// Computes all results and their slopes from what the leaves have.
     pub fn run(&mut self) {
-        let Self { line, registers, values, slopes } = self;
+        let Self { line, registers, values, slopes, .. } = self;
         forward(&line.ops, line.leaves.len(), *registers, values, slopes);
     }
 
@@ -107,17 +109,18 @@ impl Forward {
 
     /// Hands results, with their slopes, on to leaves: pairs of a result and a leaf.
     pub fn hand_on(&mut self, pairs: &[(usize, usize)]) {
-        let one = |&(result, _): &(usize, usize)| {
-            let root = self.line.roots[result]? as usize;
-            let slopes = &self.slopes[root * self.registers..][..self.registers];
-            Some((self.values[root], slopes.to_vec()))
-        };
+        let Self { line, registers, values, slopes, handed } = self;
+        let of = |number: usize| number * *registers..(number + 1) * *registers;
         // a result may be a leaf itself
-        let all: Vec<_> = pairs.iter().map(one).collect();
-        for ((_, leaf), result) in pairs.iter().zip(all) {
-            let Some((value, slopes)) = result else { continue };
-            self.values[*leaf] = value;
-            self.slopes[leaf * self.registers..][..self.registers].copy_from_slice(&slopes);
+        handed.clear();
+        for &(result, leaf) in pairs {
+            let from = line.roots[result].map_or(leaf, |root| root as usize);
+            handed.push(values[from]);
+            handed.extend_from_slice(&slopes[of(from)]);
+        }
+        for (&(_, leaf), handed) in pairs.iter().zip(handed.chunks_exact(1 + *registers)) {
+            values[leaf] = handed[0];
+            slopes[of(leaf)].copy_from_slice(&handed[1..]);
         }
     }
 }

@@ -4,7 +4,7 @@ use super::super::lane::Drive;
 use super::super::plan::Plan;
 use crate::real::{Forward, Given, Leaf, Node, Tape};
 
-/// Registers of slopes of all its numbers up to which it is: half a megabyte.
+/// Registers of slopes of all numbers up to which a program is replayed: half a megabyte.
 const REGISTERS: usize = 8192;
 
 /// How many of what the directions of a program are, in their order. What is recorded as given has the
@@ -24,6 +24,8 @@ pub(super) struct Program {
 }
 
 impl Program {
+    /// Some results of a tape along so many directions, all of which are there or none; `None` where it is
+    /// known only in a run from its start, or too large.
     pub fn of(tape: &Tape, results: &[Node], directions: usize, sizes: Sizes) -> Option<Self> {
         let nodes: Vec<Option<Node>> = results.iter().copied().map(Some).collect();
         let forward = Forward::of(tape, &nodes, directions)?;
@@ -45,10 +47,12 @@ impl Program {
         Some(program)
     }
 
+    /// Where something given goes, if it is asked for.
     pub fn leaf(&self, of: Given) -> Option<usize> {
         self.given.iter().find(|(given, _)| *given == of).map(|(_, leaf)| *leaf)
     }
 
+    /// Lets states move along directions of their own.
     pub fn seed_states(&mut self) {
         for &(given, leaf) in &self.given {
             if let Given::State(i) = given {
@@ -57,6 +61,7 @@ impl Program {
         }
     }
 
+    /// Lets forces and parameters do so.
     fn seed_rest(&mut self) {
         let Sizes { states, forces, parameters } = self.sizes;
         for &(given, leaf) in &self.given {

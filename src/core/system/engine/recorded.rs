@@ -83,6 +83,7 @@ pub(super) fn give_inputs(run: &mut Run<'_, Trace>, plan: &Plan) {
             run.ramp[i] = next - now;
         }
     }
+    run.w.copy_from_slice(&run.ramp);
 }
 
 /// The term of a number on the tape that is being recorded, also of a constant.

@@ -15,6 +15,7 @@ use crate::real::{Given, Node, Tape, Trace};
 
 /// Directions up to which a program is replayed: beyond them its slopes outgrow the processor's cache.
 const MOST: usize = 64;
+
 /// Terms of what a filter asks for.
 struct Asked {
     outputs: Vec<Node>,
