@@ -1,6 +1,6 @@
 //! Outputs that read what enters the plant: an accelerometer.
 
-use super::filter::{is_the_normal_density, slopes_are_of_differences};
+use super::filter::{Sloped, is_the_normal_density, sloped};
 use super::plants::{Sizes, accelerometer, excitation, simulate, system};
 use crate::noise::{Noise, Slow};
 use crate::path::Path;
@@ -27,8 +27,11 @@ fn the_likelihood_is_the_multivariate_normal_density() {
 }
 
 #[test]
-fn slopes_of_the_likelihood_are_those_of_differences() {
-    slopes_are_of_differences(noisy(200), 4);
+fn scores_are_slopes_of_the_likelihood() {
+    for Sloped { component, slope, difference, .. } in sloped(&noisy(200), 1e-5) {
+        let error = (slope - difference).abs() / difference.abs().max(1.0);
+        assert!(error < 1e-5, "{component:?}: {slope} {difference}");
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::plants::{GANTRY, OSCILLATOR, Sizes, excitation, simulate, system};
 use crate::Predictor;
-use crate::noise::{Layout, Noise, Slow};
+use crate::noise::{Component, Layout, Noise, Slow};
 use crate::path::Path;
 use crate::replay::Pass;
 
@@ -179,32 +179,45 @@ fn a_linear_plant_gets_the_kalman_filter() {
     );
 }
 
-/// Asserts that the slopes of a path's likelihood along so many variances are those of differences.
-pub fn slopes_are_of_differences((path, noise): (Path, Noise), components: usize) {
+/// What the likelihood of a path does along the variance of each component of its noise.
+pub struct Sloped {
+    pub component: Component,
+    pub variance: f64,
+    /// By the score, and by a central difference.
+    pub slope: f64,
+    pub difference: f64,
+}
+
+/// The slopes of a path's likelihood, with differences over this share of each variance.
+pub fn sloped((path, noise): &(Path, Noise), share: f64) -> Vec<Sloped> {
     let along = noise.components();
-    assert_eq!(along.len(), components);
-    let mut pass = Pass::new(&path, Layout::of(&path, &noise), false);
-    pass.forward(&path, &noise);
+    let mut pass = Pass::new(path, Layout::of(path, noise), false);
+    pass.forward(path, noise);
     let mut slopes = vec![0.0; along.len()];
-    pass.gradient(&path, &noise, &along, &mut slopes);
-    for (component, slope) in along.iter().zip(slopes) {
-        let variance = noise.variance(*component);
+    pass.gradient(path, noise, &along, &mut slopes);
+    let one = |(component, slope): (Component, f64)| {
+        let variance = noise.variance(component);
         let mut at = |factor: f64| {
             let mut moved = noise.clone();
-            moved.set(*component, variance * factor);
-            pass.forward(&path, &moved)
+            moved.set(component, variance * factor);
+            pass.forward(path, &moved)
         };
-        let difference = (at(1.0 + 1e-4) - at(1.0 - 1e-4)) / (2e-4 * variance);
+        let difference = (at(1.0 + share) - at(1.0 - share)) / (2.0 * share * variance);
+        Sloped { component, variance, slope, difference }
+    };
+    along.into_iter().zip(slopes).map(one).collect()
+}
+
+#[test]
+fn slopes_of_the_likelihood_are_those_of_differences() {
+    let all = sloped(&noisy(60), 1e-4);
+    assert_eq!(all.len(), 6);
+    for Sloped { component, variance, slope, difference } in all {
         assert!(
             (slope - difference).abs() < 1e-4 * difference.abs().max(1e-3 / variance),
             "{component:?} {slope} {difference}"
         );
     }
-}
-
-#[test]
-fn slopes_of_the_likelihood_are_those_of_differences() {
-    slopes_are_of_differences(noisy(60), 6);
 }
 
 #[test]
