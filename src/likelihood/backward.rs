@@ -8,82 +8,78 @@
 
 use super::noise::{Component, Layout, Noise};
 use super::path::Path;
-use super::rows::{Quad, Rows, add, combine, dot};
+use super::rows::{Rows, dot};
 use super::transition::augment;
 
 /// The backward recursion.
 pub(crate) struct Back {
-    na: usize,
-    r: Vec<Quad>,
+    r: Rows,
     /// Variance of what is still to come.
     pub n: Rows,
-    c: Vec<Quad>,
-    gain: Vec<Quad>,
-    nk: Vec<Quad>,
-    own: Vec<Quad>,
+    c: Rows,
+    gain: Rows,
+    nk: Rows,
+    own: Rows,
     m: Rows,
     f: Rows,
+    transposed: Rows,
 }
 
 impl Back {
     pub fn new(layout: &Layout) -> Self {
         let na = layout.len();
-        let zeros = || vec![[0.0; 4]; na.div_ceil(4)];
+        let (vector, matrix) = (|| Rows::vector(na), || Rows::zeros(na, na));
         Self {
-            na,
-            r: zeros(),
-            n: Rows::zeros(na, na),
-            c: zeros(),
-            gain: zeros(),
-            nk: zeros(),
-            own: zeros(),
-            m: Rows::zeros(na, na),
-            f: Rows::zeros(na, na),
+            r: vector(),
+            n: matrix(),
+            c: vector(),
+            gain: vector(),
+            nk: vector(),
+            own: vector(),
+            m: matrix(),
+            f: matrix(),
+            transposed: matrix(),
         }
     }
 
     pub fn restart(&mut self) {
-        self.r.fill([0.0; 4]);
+        self.r.clear();
         self.n.clear();
     }
 
     /// Sum of what is still to come.
     #[inline(always)]
     pub fn r(&self) -> &[f64] {
-        &self.r.as_flattened()[..self.na]
+        self.r.numbers()
     }
 
     /// Row of the output that is gone through, to write.
     #[inline(always)]
     pub fn c_mut(&mut self) -> &mut [f64] {
-        &mut self.c.as_flattened_mut()[..self.na]
+        self.c.numbers_mut()
     }
 
     /// One output, with the row `c`; its smoothing error. `d` is the variance of that where N is
     /// stationary, and N then stays.
     #[inline(always)]
     pub fn update(&mut self, gain: &[f64], z: f64, s: f64, d: Option<f64>) -> (f64, f64) {
-        self.gain.as_flattened_mut()[..self.na].copy_from_slice(gain);
+        self.gain.numbers_mut().copy_from_slice(gain);
         let u = z / s.sqrt() - dot(&self.gain, &self.r);
-        add(&mut self.r, u, &self.c);
+        for (r, c) in self.r.numbers_mut().iter_mut().zip(self.c.numbers()) {
+            *r += u * c;
+        }
         if let Some(d) = d {
             return (u, d);
         }
-        combine(&mut self.nk, gain, &self.n);
+        self.nk.product(&self.gain, &self.n);
         let d = 1.0 / s + dot(&self.gain, &self.nk);
         // N += c (d c - N K)' - N K c'
-        let both = self.c.as_flattened().iter().zip(self.nk.as_flattened());
-        for (own, (c, nk)) in self.own.as_flattened_mut().iter_mut().zip(both) {
+        let both = self.c.numbers().iter().zip(self.nk.numbers());
+        for (own, (c, nk)) in self.own.numbers_mut().iter_mut().zip(both) {
             *own = d * c - nk;
         }
-        for i in 0..self.na {
-            let (c, nk) = (self.c.as_flattened()[i], self.nk.as_flattened()[i]);
-            let row = self.n.row_mut(i);
-            if c != 0.0 {
-                add(row, c, &self.own);
-            }
-            add(row, -nk, &self.c);
-        }
+        self.n.add_product(1.0, &self.c, &self.own);
+        self.n.add_product(-1.0, &self.nk, &self.c);
         (u, d)
     }
 
@@ -123,26 +119,15 @@ impl Back {
         noise: &Noise,
         stationary: bool,
     ) {
-        let na = self.na;
         augment(&mut self.f, path.a(k), path.g(k), layout, noise);
-        let f = &self.f;
-        combine(&mut self.own, &self.r.as_flattened()[..na], f);
+        self.own.product(&self.r, &self.f);
         std::mem::swap(&mut self.r, &mut self.own);
         if stationary {
             return;
         }
-        for i in 0..na {
-            combine(self.m.row_mut(i), &self.n.plain(i)[..na], f);
-        }
-        self.n.clear();
-        for i in 0..na {
-            for j in 0..na {
-                let factor = f.plain(i)[j];
-                if factor != 0.0 {
-                    add(self.n.row_mut(j), factor, self.m.row(i));
-                }
-            }
-        }
-        self.n.mirror(na);
+        self.m.product(&self.n, &self.f);
+        self.transposed.transpose(&self.f);
+        self.n.product(&self.transposed, &self.m);
+        self.n.mirror();
     }
 }

@@ -7,19 +7,18 @@
 //! Source: Kalman, J. Basic Eng. 82, 1960.
 
 use super::noise::{Layout, Noise};
-use super::rows::{Quad, Rows, add, combine, dot};
+use super::rows::{Rows, dot};
 use super::transition::augment;
 
 /// A covariance and the room that its recursion needs: nothing is allocated on the way.
 #[derive(Debug, Clone)]
 pub(crate) struct Kalman {
-    na: usize,
     /// The covariance.
     pub p: Rows,
-    k: Vec<Quad>,
-    c: Vec<Quad>,
-    v: Vec<Quad>,
-    w: Vec<Quad>,
+    k: Rows,
+    c: Rows,
+    v: Rows,
+    w: Rows,
     m: Rows,
     f: Rows,
     transposed: Rows,
@@ -28,36 +27,35 @@ pub(crate) struct Kalman {
 impl Kalman {
     pub fn new(layout: &Layout) -> Self {
         let na = layout.len();
-        let zeros = || vec![[0.0; 4]; na.div_ceil(4)];
+        let (vector, matrix) = (|| Rows::vector(na), || Rows::zeros(na, na));
         Self {
-            na,
-            p: Rows::zeros(na, na),
-            k: zeros(),
-            c: zeros(),
-            v: zeros(),
-            w: zeros(),
-            m: Rows::zeros(na, na),
-            f: Rows::zeros(na, na),
-            transposed: Rows::zeros(na, na),
+            p: matrix(),
+            k: vector(),
+            c: vector(),
+            v: vector(),
+            w: vector(),
+            m: matrix(),
+            f: matrix(),
+            transposed: matrix(),
         }
     }
 
     /// The gain of the last update.
     #[inline(always)]
     pub fn k(&self) -> &[f64] {
-        &self.k.as_flattened()[..self.na]
+        self.k.numbers()
     }
 
     /// Row of the output that is taken in.
     #[inline(always)]
     pub fn c(&self) -> &[f64] {
-        &self.c.as_flattened()[..self.na]
+        self.c.numbers()
     }
 
     /// The same to write.
     #[inline(always)]
     pub fn c_mut(&mut self) -> &mut [f64] {
-        &mut self.c.as_flattened_mut()[..self.na]
+        self.c.numbers_mut()
     }
 
     /// The start of a segment: variances of the states; those of the slow parts belong to them.
@@ -76,34 +74,27 @@ impl Kalman {
     pub fn update(&mut self, r: f64) -> f64 {
         let s = self.gain(r);
         let root = s.sqrt();
-        for (w, v) in self.w.as_flattened_mut().iter_mut().zip(self.v.as_flattened()) {
+        for (w, v) in self.w.numbers_mut().iter_mut().zip(self.v.numbers()) {
             *w = v / root;
         }
-        for i in 0..self.na {
-            let own = self.w.as_flattened()[i];
-            add(self.p.row_mut(i), -own, &self.w);
-        }
+        self.p.add_product(-1.0, &self.w, &self.w);
         // w becomes r k - v / 2
-        combine(&mut self.v, &self.c.as_flattened()[..self.na], &self.p);
-        let both = self.v.as_flattened().iter().zip(self.k.as_flattened());
-        for (w, (v, k)) in self.w.as_flattened_mut().iter_mut().zip(both) {
+        self.v.product(&self.c, &self.p);
+        let both = self.v.numbers().iter().zip(self.k.numbers());
+        for (w, (v, k)) in self.w.numbers_mut().iter_mut().zip(both) {
             *w = r * k - 0.5 * v;
         }
-        for i in 0..self.na {
-            let (k, v) = (self.k.as_flattened()[i], self.v.as_flattened()[i]);
-            let row = self.p.row_mut(i);
-            add(row, k, &self.w);
-            add(row, -0.5 * v, &self.k);
-        }
+        self.p.add_product(1.0, &self.k, &self.w);
+        self.p.add_product(-0.5, &self.v, &self.k);
         s
     }
 
     /// The variance of an innovation and the gain, without taking it in.
     #[inline(always)]
     pub fn gain(&mut self, r: f64) -> f64 {
-        combine(&mut self.v, &self.c.as_flattened()[..self.na], &self.p);
+        self.v.product(&self.c, &self.p);
         let s = (r + dot(&self.v, &self.c)).max(f64::MIN_POSITIVE);
-        for (k, v) in self.k.as_flattened_mut().iter_mut().zip(self.v.as_flattened()) {
+        for (k, v) in self.k.numbers_mut().iter_mut().zip(self.v.numbers()) {
             *k = v / s;
         }
         s
@@ -112,15 +103,11 @@ impl Kalman {
     /// Goes on to the next sample: `a` states by states, `g` states by forces.
     #[inline(always)]
     pub fn predict(&mut self, a: &[f64], g: &[f64], layout: &Layout, noise: &Noise) {
-        let (na, n, nf) = (self.na, layout.n, noise.white.len());
+        let (n, nf) = (layout.n, noise.white.len());
         augment(&mut self.f, a, g, layout, noise);
-        self.transposed.transpose(&self.f, na);
-        for i in 0..na {
-            combine(self.m.row_mut(i), &self.f.plain(i)[..na], &self.p);
-        }
-        for i in 0..na {
-            combine(self.p.row_mut(i), &self.m.plain(i)[..na], &self.transposed);
-        }
+        self.transposed.transpose(&self.f);
+        self.m.product(&self.f, &self.p);
+        self.p.product(&self.m, &self.transposed);
         let white: &[f64] = if layout.lets_white_in() { &noise.white } else { &[] };
         for (c, &q) in white.iter().enumerate().filter(|(_, q)| **q > 0.0) {
             for i in 0..n {
@@ -132,6 +119,6 @@ impl Kalman {
         for (i, part) in layout.parts(noise) {
             self.p.plain_mut(i)[i] += part.variance;
         }
-        self.p.mirror(na);
+        self.p.mirror();
     }
 }

@@ -32,6 +32,7 @@ mod held_out;
 mod hypothesis;
 mod intensities;
 mod kalman;
+mod lacking;
 mod laws;
 mod missing;
 mod model;

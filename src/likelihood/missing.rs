@@ -11,25 +11,14 @@ use rayon::prelude::*;
 
 use super::error::LikelihoodError;
 use super::follow::Wanted;
-use super::intensities::{concentrated, most_likely, nearly_most_likely};
-use super::noise::{Layout, Noise, Slow};
+use super::intensities::most_likely;
+use super::lacking::{ALIKE, Lacking, POLES};
+use super::noise::{Layout, Noise};
 use super::path::Path;
 use super::predictor::{Predictor, column, starts};
 use super::replay::Pass;
 use super::share::share;
 use crate::system::Transition;
-
-/// Variances of the increments that are tried, over those of the measurement noise, in units of the squares
-/// of the force scale and of the outputs' spreads: one another's multiple is no other start.
-const RATIOS: [f64; 7] = [1e-6, 1e-4, 1e-2, 1.0, 1e2, 1e4, 1e6];
-
-/// Poles of the force: a random walk, and processes that fade within 1000 to 10 samples. A walk keeps what no
-/// sensor sees, as the constant part of a force on a sprung mass with an accelerometer.
-const POLES: [f64; 6] = [1.0, 0.999, 0.997, 0.99, 0.97, 0.9];
-
-/// Log likelihood that two channels may differ by and still explain alike: odds of 20 to 1, Jeffreys'
-/// bound of strong evidence ("Theory of Probability", 1961, appendix B).
-const ALIKE: f64 = 3.0;
 
 /// Samples left out at both ends of the record: a smoother knows one side only there.
 const ENDS: f64 = 0.01;
@@ -76,15 +65,6 @@ impl MissingForce {
     pub fn is_seen(&self) -> bool {
         self.gain > ALIKE
     }
-}
-
-/// Where a force may be missing.
-#[derive(Debug, Clone, Copy)]
-enum Lacking {
-    /// In a channel, or an input counted behind them.
-    Force(usize),
-    /// In an output equation.
-    Output(usize),
 }
 
 impl Predictor {
@@ -183,40 +163,6 @@ impl Predictor {
         let gain = run.log_likelihood - without;
         let alike = vec![];
         Ok(MissingForce { channel, unit, rms, gain, values, band, explained_by, alike })
-    }
-
-    /// The most likely measurement noise and slow force at one place, of the shortest memory that the record
-    /// calls for: of poles that it does not tell apart the smallest.
-    fn walking(&self, path: &Path, at: Lacking) -> Noise {
-        let fitted = POLES.map(|pole| {
-            let noise = self.begun(path, at, pole).0;
-            nearly_most_likely(path, &noise, &noise.components())
-        });
-        let best = fitted.iter().map(|(_, value)| *value).fold(f64::NEG_INFINITY, f64::max);
-        let [walk, ..] = &fitted;
-        let shortest = fitted.iter().rev().find(|(_, value)| best - value < ALIKE);
-        shortest.unwrap_or(walk).0.clone()
-    }
-
-    /// The most likely of some slow forces of one pole at one place, and its log likelihood, all variances
-    /// by a common factor.
-    fn begun(&self, path: &Path, at: Lacking, pole: f64) -> (Noise, f64) {
-        let scale = match at {
-            Lacking::Output(o) => self.spread[o],
-            Lacking::Force(c) => path.force_scales()[c],
-        };
-        let tried = RATIOS.iter().map(|ratio| {
-            let measurement = self.spread.iter().map(|s| 1e-5 / ratio.sqrt() * s * s);
-            let mut noise = self.white(measurement.map(|r| r + f64::MIN_POSITIVE).collect());
-            let slow = Slow { variance: 1e-5 * ratio.sqrt() * scale * scale, pole };
-            match at {
-                Lacking::Output(o) => noise.wander[o] = slow,
-                Lacking::Force(c) => noise.slow[c] = slow,
-            }
-            concentrated(path, &noise)
-        });
-        let best = tried.max_by(|a, b| a.1.total_cmp(&b.1));
-        best.unwrap_or_else(|| (self.white(self.spread.clone()), f64::NEG_INFINITY))
     }
 
     /// The shares of every coordinate in a force, the largest first; `states` are where to look.

@@ -225,7 +225,7 @@ lacuna_core::per_isa! {
                 let since = segment.end - 1 - k;
                 let same = since > 0 && pass.is_as_next(path, k);
                 stationary = same && (stationary || (since % ASKED == 0
-                    && back.n.is_settled(&before, na)));
+                    && back.n.is_settled(&before)));
                 if k + 1 < segment.end {
                     if since % ASKED == ASKED - 1 {
                         before.clone_from(&back.n);

@@ -1,63 +1,79 @@
-//! Matrices whose rows are whole blocks of four numbers, so that what is done to a row is done by vector
+//! Matrices whose rows are whole blocks of eight numbers, so that what is done to a row is done by vector
 //! instructions. Numbers beyond the last column are 0 and stay 0.
 
-/// Four neighbouring numbers of a row.
-pub(crate) type Quad = [f64; 4];
+use crate::real::{F64x8, Real, flat, flat_mut};
+use lacuna_core::per_lanes;
 
-/// A matrix, row by row.
+/// Numbers in a block.
+const BLOCK: usize = 8;
+
+/// A matrix, row by row; one row of it is a vector.
 #[derive(Debug, Clone)]
 pub(crate) struct Rows {
+    /// Blocks of a row.
     width: usize,
-    values: Vec<Quad>,
+    /// Columns.
+    n: usize,
+    values: Vec<F64x8>,
 }
 
 impl Rows {
     pub fn zeros(rows: usize, columns: usize) -> Self {
-        let width = columns.div_ceil(4);
-        Self { width, values: vec![[0.0; 4]; rows * width] }
+        let width = columns.div_ceil(BLOCK);
+        Self { width, n: columns, values: vec![F64x8::constant(0.0); rows * width] }
     }
 
+    /// A vector of zeros.
+    pub fn vector(n: usize) -> Self {
+        Self::zeros(1, n)
+    }
+
+    #[inline(always)]
     pub fn clear(&mut self) {
-        self.values.fill([0.0; 4]);
-    }
-
-    #[inline(always)]
-    pub fn row(&self, i: usize) -> &[Quad] {
-        &self.values[i * self.width..][..self.width]
-    }
-
-    #[inline(always)]
-    pub fn row_mut(&mut self, i: usize) -> &mut [Quad] {
-        &mut self.values[i * self.width..][..self.width]
+        self.values.fill(F64x8::constant(0.0));
     }
 
     /// A row as plain numbers, with what is beyond its last column.
     #[inline(always)]
     pub fn plain(&self, i: usize) -> &[f64] {
-        self.row(i).as_flattened()
+        &flat(&self.values)[i * self.width * BLOCK..][..self.width * BLOCK]
     }
 
     /// The same to write.
     #[inline(always)]
     pub fn plain_mut(&mut self, i: usize) -> &mut [f64] {
-        self.row_mut(i).as_flattened_mut()
+        &mut flat_mut(&mut self.values)[i * self.width * BLOCK..][..self.width * BLOCK]
+    }
+
+    /// The numbers of a vector.
+    #[inline(always)]
+    pub fn numbers(&self) -> &[f64] {
+        &flat(&self.values)[..self.n]
+    }
+
+    /// The same to write.
+    #[inline(always)]
+    pub fn numbers_mut(&mut self) -> &mut [f64] {
+        &mut flat_mut(&mut self.values)[..self.n]
     }
 
     /// The transpose of a square matrix.
     #[inline(always)]
-    pub fn transpose(&mut self, of: &Self, n: usize) {
-        for i in 0..n {
-            for j in 0..n {
-                self.plain_mut(j)[i] = of.plain(i)[j];
+    pub fn transpose(&mut self, of: &Self) {
+        let (stride, n) = (self.width * BLOCK, self.n);
+        let (to, of) = (flat_mut(&mut self.values), flat(&of.values));
+        for (i, row) in of.chunks_exact(stride.max(1)).enumerate() {
+            for (to, &value) in to[i..].iter_mut().step_by(stride.max(1)).zip(&row[..n]) {
+                *to = value;
             }
         }
     }
 
     /// The lower half as the upper.
     #[inline(always)]
-    pub fn mirror(&mut self, n: usize) {
-        let stride = 4 * self.width;
-        let values = self.values.as_flattened_mut();
+    pub fn mirror(&mut self) {
+        let (stride, n) = (self.width * BLOCK, self.n);
+        let values = flat_mut(&mut self.values);
         for i in 1..n {
             for j in 0..i {
                 values[i * stride + j] = values[j * stride + i];
@@ -66,7 +82,8 @@ impl Rows {
     }
 
     /// Whether all entries of a symmetric matrix are those of another, within rounding of its diagonal.
-    pub fn is_settled(&self, before: &Self, n: usize) -> bool {
+    pub fn is_settled(&self, before: &Self) -> bool {
+        let n = self.n;
         let size = |i: usize| self.plain(i)[i].abs().sqrt();
         (0..n).all(|i| {
             let near = |j: usize| {
@@ -76,27 +93,29 @@ impl Rows {
             (i..n).all(near)
         })
     }
+
+    /// The product of a matrix, or of a vector taken as a row, with another matrix.
+    #[inline(always)]
+    pub fn product(&mut self, left: &Self, right: &Self) {
+        product(&mut self.values, flat(&left.values), &right.values, self.width, right.n);
+    }
+
+    /// Adds factor a b', `a` and `b` being vectors.
+    #[inline(always)]
+    pub fn add_product(&mut self, factor: f64, a: &Self, b: &Self) {
+        add_product(&mut self.values, factor, a.numbers(), &b.values);
+    }
 }
 
 /// Change from sample to sample up to which a matrix, in units of the square roots of its diagonal, or a
 /// variance, in units of itself, is stationary.
 pub(crate) const SETTLED: f64 = 1e-13;
 
-/// to += factor from
+/// a' b, four sums side by side.
 #[inline(always)]
-pub(crate) fn add(to: &mut [Quad], factor: f64, from: &[Quad]) {
-    for (to, from) in to.iter_mut().zip(from) {
-        for (to, from) in to.iter_mut().zip(from) {
-            *to += factor * from;
-        }
-    }
-}
-
-/// a' b
-#[inline(always)]
-pub(crate) fn dot(a: &[Quad], b: &[Quad]) -> f64 {
+pub(crate) fn dot(a: &Rows, b: &Rows) -> f64 {
     let mut sum = [0.0; 4];
-    for (a, b) in a.iter().zip(b) {
+    for (a, b) in flat(&a.values).chunks_exact(4).zip(flat(&b.values).chunks_exact(4)) {
         for i in 0..4 {
             sum[i] += a[i] * b[i];
         }
@@ -104,13 +123,39 @@ pub(crate) fn dot(a: &[Quad], b: &[Quad]) -> f64 {
     (sum[0] + sum[1]) + (sum[2] + sum[3])
 }
 
-/// to = sum of factors times rows
-#[inline(always)]
-pub(crate) fn combine(to: &mut [Quad], factors: &[f64], rows: &Rows) {
-    to.fill([0.0; 4]);
-    for (l, &factor) in factors.iter().enumerate() {
-        if factor != 0.0 {
-            add(to, factor, rows.row(l));
+// loops and no closures: a closure does not get the vector instructions of the function around it
+per_lanes! {
+    fn product[; R](to: &mut [R], left: &[f64], right: &[R], width: usize, n: usize) {
+        if width == 1 {
+            for (to, factors) in to.iter_mut().zip(left.chunks_exact(BLOCK)) {
+                let mut sum = R::constant(0.0);
+                for (row, &factor) in right.iter().zip(&factors[..n]) {
+                    sum += *row * factor;
+                }
+                *to = sum;
+            }
+            return;
+        }
+        let rows = to.chunks_exact_mut(width.max(1)).zip(left.chunks_exact((width * BLOCK).max(1)));
+        for (to, factors) in rows {
+            for q in 0..width {
+                let mut sum = R::constant(0.0);
+                for (l, &factor) in factors[..n].iter().enumerate() {
+                    sum += right[l * width + q] * factor;
+                }
+                to[q] = sum;
+            }
+        }
+    }
+}
+
+per_lanes! {
+    fn add_product[; R](rows: &mut [R], factor: f64, a: &[f64], b: &[R]) {
+        for (row, &a) in rows.chunks_exact_mut(b.len().max(1)).zip(a) {
+            let a = factor * a;
+            for q in 0..b.len() {
+                row[q] += b[q] * a;
+            }
         }
     }
 }

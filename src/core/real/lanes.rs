@@ -17,6 +17,20 @@ pub type F64x8 = Lanes<f64, 8>;
 /// Sixteen `f32`: one cache line, one AVX-512 register.
 pub type F32x16 = Lanes<f32, 16>;
 
+/// Blocks as the numbers in them.
+#[inline(always)]
+pub fn flat(blocks: &[F64x8]) -> &[f64] {
+    // SAFETY: a block is eight numbers and nothing else, by its representation
+    unsafe { std::slice::from_raw_parts(blocks.as_ptr().cast(), 8 * blocks.len()) }
+}
+
+/// The same, to be changed.
+#[inline(always)]
+pub fn flat_mut(blocks: &mut [F64x8]) -> &mut [f64] {
+    // SAFETY: as above
+    unsafe { std::slice::from_raw_parts_mut(blocks.as_mut_ptr().cast(), 8 * blocks.len()) }
+}
+
 macro_rules! binary {
     ($t:ty, $($trait:ident $method:ident $assign_trait:ident $assign:ident $op:tt),*) => {$(
         #[allow(clippy::assign_op_pattern)] // the operator is an argument

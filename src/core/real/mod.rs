@@ -44,7 +44,7 @@ pub use dual::Dual;
 pub use self::{
     forward::Forward,
     isa::{Isa, recast},
-    lanes::{F32x16, F64x8, InRegisters, Lanes},
+    lanes::{F32x16, F64x8, InRegisters, Lanes, flat, flat_mut},
     reverse::Reverse,
     straight_line::Leaf,
     tape::{Binary, Given, Line, Node, Tape, Term, Unary},

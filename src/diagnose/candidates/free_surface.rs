@@ -11,11 +11,12 @@ use crate::candidates::leading_places::{Asked, Terms, leading};
 use crate::candidates::library::{Builder, Spot};
 use crate::candidates::products::Tensor;
 use crate::candidates::smoothing::{Smoothed, smoothed};
-use crate::effect::{Effect, View, curve};
-use crate::fit::problem::{Grain, Job, Model, Part, Span};
+use crate::candidates::term_columns::Moving;
+use crate::effect::{Effect, View};
+use crate::fit::problem::{Model, Part};
 use crate::plugins::effects::network::Network;
 use crate::statistics::project;
-use crate::system::{Origin, Placed};
+use crate::system::Origin;
 
 /// The effect's name.
 pub(crate) const NAME: &str = "network";
@@ -42,25 +43,6 @@ pub(crate) struct Surface {
     pub law: Tensor,
     /// Share of what is left that it predicts where it was not fitted.
     pub share: f64,
-}
-
-/// A coordinate that moves.
-struct Moving {
-    source: usize,
-    offset: f64,
-    scale: f64,
-}
-
-impl Moving {
-    /// Polynomials of the coordinate along a course of it, from order 0 on.
-    fn powers(&self, z: &[f64]) -> Vec<Vec<f64>> {
-        let power = |order: usize| {
-            let (offsets, scales) = (vec![self.offset], vec![self.scale]);
-            let of = Tensor { offsets, scales, orders: vec![vec![order]], values: vec![1.0] };
-            curve(&of, &[1.0], z)
-        };
-        (0..=SINGLE.len()).map(power).collect()
-    }
 }
 
 impl Drawing<'_, '_> {
@@ -98,18 +80,14 @@ impl Drawing<'_, '_> {
             if self.watch.stopped() || open.is_empty() && !(0..moving.len()).any(wants) {
                 continue;
             }
-            let constant = self.columns(&at, target, &moving[..moving.len().min(1)], &[vec![0]]);
-            let single: Vec<Vec<Vec<f64>>> = moving
-                .iter()
-                .enumerate()
-                .map(|(i, one)| {
-                    if !(wants(i) || with(i)) || self.watch.stopped() {
-                        return vec![];
-                    }
-                    let orders: Vec<Vec<usize>> = SINGLE.iter().map(|&o| vec![o]).collect();
-                    self.columns(&at, target, std::slice::from_ref(one), &orders)
-                })
-                .collect();
+            let of_one = |i: usize| Some(vec![i]).filter(|_| wants(i) || with(i));
+            let mut asked = vec![(vec![0], vec![vec![0]])];
+            let single = SINGLE.map(|order| vec![order]).to_vec();
+            asked.extend((0..moving.len()).filter_map(of_one).map(|of| (of, single.clone())));
+            let mut found = self.columns(&at, target, &moving, &asked).into_iter();
+            let constant = found.next().unwrap_or_default();
+            let of_one = |i| of_one(i).and_then(|_| found.next()).unwrap_or_default();
+            let single: Vec<Vec<Vec<f64>>> = (0..moving.len()).map(of_one).collect();
             let mut laws: Vec<(Vec<usize>, Vec<Vec<usize>>, Smoothed)> = vec![];
             for (i, own) in
                 single.iter().enumerate().filter(|(i, own)| wants(*i) && !own.is_empty())
@@ -119,18 +97,16 @@ impl Drawing<'_, '_> {
                 let columns = [&constant[..], own].concat();
                 laws.extend(self.fit(&columns, &left, &orders).map(|fit| (vec![i], orders, fit)));
             }
-            for (a, b) in open.into_iter().map(|p| pairs[p]) {
-                if self.watch.stopped() {
-                    break;
-                }
-                let products: Vec<Vec<usize>> = PRODUCTS.iter().map(|p| p.to_vec()).collect();
-                let both = [a, b].map(|i| Moving { ..moving[i] });
-                let mixed = self.columns(&at, target, &both, &products);
+            let products: Vec<Vec<usize>> = PRODUCTS.iter().map(|p| p.to_vec()).collect();
+            let of_two = |&p: &usize| (vec![pairs[p].0, pairs[p].1], products.clone());
+            let asked: Vec<_> = open.iter().map(of_two).collect();
+            let mixed = self.columns(&at, target, &moving, &asked);
+            for ((a, b), mixed) in open.iter().map(|&p| pairs[p]).zip(mixed) {
                 let columns = [&constant[..], &single[a], &single[b], &mixed].concat();
                 let mut orders = vec![vec![0, 0]];
                 orders.extend(SINGLE.map(|o| vec![o, 0]));
                 orders.extend(SINGLE.map(|o| vec![0, o]));
-                orders.extend(products);
+                orders.extend_from_slice(&products);
                 let fit = self.fit(&columns, &left, &orders);
                 laws.extend(fit.map(|fit| (vec![a, b], orders, fit)));
             }
@@ -169,7 +145,7 @@ impl Drawing<'_, '_> {
         let each = moving.len() * SINGLE.len() + pairs.len() * PRODUCTS.len() + 1;
         let terms = |seen: &[Vec<f64>]| {
             let powers: Vec<Vec<Vec<f64>>> =
-                moving.iter().map(|one| one.powers(&seen[one.source])).collect();
+                moving.iter().map(|one| one.powers(&seen[one.source], SINGLE.len())).collect();
             let of_one = powers.iter().map(|own| Terms::new(own));
             let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect();
             let of_two = pairs.iter().map(|&(a, b)| {
@@ -193,52 +169,6 @@ impl Drawing<'_, '_> {
             offset: 0.5 * (low + high),
             scale: 0.5 * (high - low),
         })
-    }
-
-    /// What one unit of each term does to the outputs, less what nuisance makes up for.
-    fn columns(
-        &self,
-        at: &At<'_>,
-        target: usize,
-        of: &[Moving],
-        orders: &[Vec<usize>],
-    ) -> Vec<Vec<f64>> {
-        let base = &self.problem.base;
-        let name = |m: &Moving| base.sources.entries[m.source].0.name.clone();
-        let Some(first) = of.first() else { return vec![] };
-        let tensor = Tensor {
-            offsets: of.iter().map(|m| m.offset).collect(),
-            scales: of.iter().map(|m| m.scale).collect(),
-            orders: orders.to_vec(),
-            values: vec![0.0; orders.len()],
-        };
-        let into = &base.targets.entries[target].0.name;
-        let also_of = of[1..].iter().map(name).collect();
-        let tensor = Placed { also_of, ..Placed::new(Box::new(tensor), into, Some(&name(first))) };
-        let step = PROBE * self.nominal.natural[target];
-        let silent = || vec![vec![0.0; at.now.len()]; orders.len()];
-        let Some(job) = self.problem.job(at.model, Grain::Coarse) else { return silent() };
-        let mut placed: Vec<Placed> =
-            at.model.added.iter().filter_map(|a| a.cause.placed(&a.parameters)).collect();
-        placed.push(tensor);
-        let Some(plan) = self.problem.plan_anew(Grain::Coarse, &placed) else { return silent() };
-        let jobs: Vec<Job> = (0..orders.len())
-            .map(|i| {
-                let mut job = Job { plan: plan.clone(), lane: job.lane.clone() };
-                job.lane
-                    .effect_values
-                    .extend((0..orders.len()).map(|j| if i == j { step } else { 0.0 }));
-                job
-            })
-            .collect();
-        let column = |y: Option<Arc<Vec<Vec<f64>>>>| {
-            let Some(y) = y else { return vec![0.0; at.now.len()] };
-            let r = self.problem.residual(&y, Part::Fit);
-            let mut column: Vec<f64> = at.now.iter().zip(&r).map(|(a, b)| (a - b) / step).collect();
-            project(&at.basis, &mut column);
-            column
-        };
-        self.problem.run(&jobs, Span::Fit).into_iter().map(column).collect()
     }
 
     /// Coefficients of the terms, the higher ones held back as much as predicts most.

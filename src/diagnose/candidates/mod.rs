@@ -20,3 +20,4 @@ pub(crate) mod smoothing;
 pub(crate) mod stiffness;
 mod stores;
 pub(crate) mod sums;
+mod term_columns;

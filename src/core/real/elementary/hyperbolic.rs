@@ -6,6 +6,9 @@ use super::{LN2_HIGH, LN2_LOW, ROUND, leading, polynomial, power_of_two, quotien
 /// From here on e^-x no longer counts beside e^x.
 const CAP: f64 = 64.0;
 
+/// From here on the hyperbolic tangent is 1 to the last bit.
+const SATURATED: f64 = 22.0;
+
 /// sinh and cosh of |x| = k ln 2 + r, divided by `scale`, as leading and trailing parts.
 struct Pair {
     sinh: (f64, f64),
@@ -75,12 +78,20 @@ pub fn cosh<const N: usize>(x: [f64; N]) -> [f64; N] {
 pub fn tanh<const N: usize>(x: [f64; N]) -> [f64; N] {
     #[inline(always)]
     fn one(x: f64) -> f64 {
-        // beyond 20 it is 1 to the last bit
-        let pair = sinh_and_cosh(up_to(22.0, x.abs()));
+        let pair = sinh_and_cosh(up_to(SATURATED, x.abs()));
         let (sinh, sinh_low) = sum(pair.sinh.0, pair.sinh.1);
         let (cosh, cosh_low) = sum(pair.cosh.0, pair.cosh.1);
         let (q, rest) = quotient((sinh, sinh_low), (cosh, cosh_low));
         (q + rest).copysign(x)
     }
-    each!(x, one)
+    #[inline(always)]
+    fn limit(x: f64) -> f64 {
+        1.0_f64.copysign(x)
+    }
+    // a block that is saturated as a whole is the rule where friction is: sliding, not turning
+    let mut saturated = true;
+    for x in &x {
+        saturated &= x.abs() >= SATURATED;
+    }
+    if saturated { each!(x, limit) } else { each!(x, one) }
 }

@@ -1,7 +1,5 @@
 //! A recorded answer of a step, with the leaves that what is given goes to.
 
-use super::super::lane::Drive;
-use super::super::plan::Plan;
 use crate::real::{Forward, Given, Leaf, Node, Tape};
 
 /// Registers of slopes of all numbers up to which a program is replayed: half a megabyte.
@@ -74,53 +72,11 @@ impl Program {
         }
     }
 
-    pub fn give_parameters(&mut self, theta: &[f64]) {
+    /// Gives every leaf the value that it is told of; the others keep theirs.
+    pub fn give(&mut self, value: impl Fn(Given) -> Option<f64>) {
         for &(given, leaf) in &self.given {
-            if let Given::Parameter(i) = given
-                && let Some(&value) = theta.get(i as usize)
-            {
+            if let Some(value) = value(given) {
                 self.forward.give(leaf, value);
-            }
-        }
-    }
-
-    pub fn give_forces(&mut self, w: &[f64]) {
-        for &(given, leaf) in &self.given {
-            if let Given::Parameter(i) = given
-                && let Some(force) = (i as usize).checked_sub(self.sizes.parameters)
-            {
-                self.forward.give(leaf, w[force]);
-            }
-        }
-    }
-
-    pub fn give_states(&mut self, x: &[f64]) {
-        for &(given, leaf) in &self.given {
-            if let Given::State(i) = given {
-                self.forward.give(leaf, x[i as usize]);
-            }
-        }
-    }
-
-    /// Inputs of a sample, and its first step.
-    pub fn give(&mut self, plan: &Plan, drive: &Drive, (k, end): (usize, usize), clock: f64) {
-        let next = if k + 1 < end { k + 1 } else { k };
-        for &(given, leaf) in &self.given {
-            match given {
-                Given::Input(i) => self.forward.give(leaf, drive.inputs[i as usize][k]),
-                Given::Next(i) => self.forward.give(leaf, drive.inputs[i as usize][next]),
-                _ => {}
-            }
-        }
-        self.give_step(clock + k as f64 * plan.sampling_time, 0);
-    }
-
-    pub fn give_step(&mut self, time: f64, step: usize) {
-        for &(given, leaf) in &self.given {
-            match given {
-                Given::Time => self.forward.give(leaf, time),
-                Given::Substep => self.forward.give(leaf, step as f64),
-                _ => {}
             }
         }
     }

@@ -83,7 +83,10 @@ impl<'a> Replayed<'a> {
             sample: 0,
         };
         for program in [&mut replayed.observed, &mut replayed.seen, &mut replayed.next] {
-            program.give_parameters(&asked.theta);
+            program.give(|given| match given {
+                Given::Parameter(i) => asked.theta.get(i as usize).copied(),
+                _ => None,
+            });
         }
         Some(replayed)
     }
@@ -97,11 +100,19 @@ impl<'a> Replayed<'a> {
         self.x.copy_from_slice(x);
     }
 
+    /// Inputs and time at a step of a sample.
+    fn at(&self, k: usize, step: usize) -> Now<'a> {
+        let (plan, drive) = (self.plan, self.drive);
+        let next = if k + 1 < self.end { k + 1 } else { k };
+        let time = self.clock + (k as f64 * plan.sampling_time + step as f64 * plan.step());
+        Now { drive, sample: k, next, time, step }
+    }
+
     pub fn observe(&mut self, k: usize, y: &mut [f64], c: &mut [f64], theta: &mut [f64]) {
         self.sample = k;
+        let now = self.at(k, 0);
         let program = &mut self.observed;
-        program.give(self.plan, self.drive, (k, self.end), self.clock);
-        program.give_states(&self.x);
+        program.give(|given| now.value(given).or_else(|| state(given, &self.x)));
         program.forward.run();
         let (n, nt) = (self.states, self.parameters);
         for (o, y) in y.iter_mut().enumerate() {
@@ -120,9 +131,9 @@ impl<'a> Replayed<'a> {
     }
 
     pub fn see(&mut self, seen: &mut [f64]) {
+        let now = self.at(self.sample, 0);
         let program = &mut self.seen;
-        program.give(self.plan, self.drive, (self.sample, self.end), self.clock);
-        program.give_states(&self.x);
+        program.give(|given| now.value(given).or_else(|| state(given, &self.x)));
         program.forward.run();
         for (i, seen) in seen.iter_mut().enumerate() {
             *seen = program.forward.value(i);
@@ -130,21 +141,22 @@ impl<'a> Replayed<'a> {
     }
 
     pub fn advance(&mut self, k: usize, w: &[f64], x: &mut [f64], to: &mut Jacobian) {
-        let (plan, program) = (self.plan, &mut self.next);
-        program.give(plan, self.drive, (k, self.end), self.clock);
-        program.give_states(&self.x);
-        program.seed_states();
-        program.give_forces(w);
-        for step in 0..plan.substeps {
+        let first = self.parameters;
+        let force = |given| match given {
+            Given::Parameter(i) => (i as usize).checked_sub(first).map(|force| w[force]),
+            _ => None,
+        };
+        self.next.give(|given| state(given, &self.x).or_else(|| force(given)));
+        self.next.seed_states();
+        for step in 0..self.plan.substeps {
             if step > 0 {
-                program.forward.hand_on(&self.onward);
-                program.give_step(
-                    self.clock + (k as f64 * plan.sampling_time + step as f64 * plan.step()),
-                    step,
-                );
+                self.next.forward.hand_on(&self.onward);
             }
-            program.forward.run();
+            let now = self.at(k, step);
+            self.next.give(|given| now.value(given));
+            self.next.forward.run();
         }
+        let program = &self.next;
         let (n, forces, nt) = (self.states, self.forces, self.parameters);
         for (i, x) in x.iter_mut().enumerate() {
             *x = program.forward.value(i);
@@ -152,6 +164,35 @@ impl<'a> Replayed<'a> {
             program.forward.slopes(i, n, &mut to.g[i * forces..][..forces]);
             program.forward.slopes(i, n + forces, &mut to.theta[i * nt..][..nt]);
         }
+    }
+}
+
+/// What a step is given from the record.
+struct Now<'a> {
+    drive: &'a Drive,
+    sample: usize,
+    next: usize,
+    time: f64,
+    step: usize,
+}
+
+impl Now<'_> {
+    fn value(&self, given: Given) -> Option<f64> {
+        match given {
+            Given::Input(i) => Some(self.drive.inputs[i as usize][self.sample]),
+            Given::Next(i) => Some(self.drive.inputs[i as usize][self.next]),
+            Given::Time => Some(self.time),
+            Given::Substep => Some(self.step as f64),
+            _ => None,
+        }
+    }
+}
+
+/// The value of what is given, if that is a state.
+fn state(given: Given, x: &[f64]) -> Option<f64> {
+    match given {
+        Given::State(i) => Some(x[i as usize]),
+        _ => None,
     }
 }
 
