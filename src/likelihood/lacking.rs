@@ -47,13 +47,13 @@ impl Predictor {
         let mut fitted: Vec<(Noise, f64)> = vec![];
         for pole in POLES {
             // what is most likely at one pole is near what is at the next
-            let beside = fitted.last().map(|(noise, _)| {
+            let near = fitted.last().map(|(noise, _)| {
                 let mut noise = noise.clone();
                 at.slow(&mut noise).pole = pole;
                 concentrated(path, &noise)
             });
             let begun = self.begun(path, at, pole);
-            let (noise, _) = beside.into_iter().fold(begun, |a, b| if b.1 > a.1 { b } else { a });
+            let (noise, _) = near.into_iter().fold(begun, |a, b| if b.1 > a.1 { b } else { a });
             fitted.push(nearly_most_likely(path, &noise, &noise.components()));
         }
         let best = fitted.iter().map(|(_, value)| *value).fold(f64::NEG_INFINITY, f64::max);
