@@ -214,7 +214,8 @@ fn not_confirmed(finding: &Finding) -> Option<String> {
     (!names.is_empty()).then(|| {
         format!(
             "Not confirmed by data that were used for nothing else (false discovery rate above {:.0} %): \
-             {names}. A longer test record would tell.",
+             {names}. How sure a cause is said to be rests on the data that it was found in; a longer test \
+             record would tell.",
             100.0 * promise.level
         )
     })
