@@ -123,30 +123,41 @@ pub(crate) fn dot(a: &Rows, b: &Rows) -> f64 {
     (sum[0] + sum[1]) + (sum[2] + sum[3])
 }
 
+/// Blocks of a row that are summed up side by side, so that no sum waits for its last addition.
+const SIDE_BY_SIDE: usize = 4;
+
 // loops and no closures: a closure does not get the vector instructions of the function around it
 per_lanes! {
     fn product[; R](to: &mut [R], left: &[f64], right: &[R], width: usize, n: usize) {
-        if width == 1 {
-            for (to, factors) in to.iter_mut().zip(left.chunks_exact(BLOCK)) {
-                let mut sum = R::constant(0.0);
-                for (row, &factor) in right.iter().zip(&factors[..n]) {
-                    sum += *row * factor;
-                }
-                *to = sum;
+        for (i, factors) in left.chunks_exact((width * BLOCK).max(1)).enumerate() {
+            let (to, factors) = (&mut to[i * width..][..width], &factors[..n]);
+            let mut from = 0;
+            while from + SIDE_BY_SIDE <= width {
+                sums::<R, SIDE_BY_SIDE>(to, factors, right, from);
+                from += SIDE_BY_SIDE;
             }
-            return;
-        }
-        let rows = to.chunks_exact_mut(width.max(1)).zip(left.chunks_exact((width * BLOCK).max(1)));
-        for (to, factors) in rows {
-            for q in 0..width {
-                let mut sum = R::constant(0.0);
-                for (l, &factor) in factors[..n].iter().enumerate() {
-                    sum += right[l * width + q] * factor;
-                }
-                to[q] = sum;
+            match width - from {
+                1 => sums::<R, 1>(to, factors, right, from),
+                2 => sums::<R, 2>(to, factors, right, from),
+                3 => sums::<R, 3>(to, factors, right, from),
+                _ => (),
             }
         }
     }
+}
+
+/// Some neighbouring blocks of a row: sums of factors times rows.
+#[inline(always)]
+fn sums<R: Real, const COUNT: usize>(to: &mut [R], factors: &[f64], right: &[R], from: usize) {
+    let width = to.len();
+    let mut sums = [R::constant(0.0); COUNT];
+    for (row, &factor) in right.chunks_exact(width).zip(factors) {
+        let row = &row[from..from + COUNT];
+        for q in 0..COUNT {
+            sums[q] += row[q] * factor;
+        }
+    }
+    to[from..from + COUNT].copy_from_slice(&sums);
 }
 
 per_lanes! {
