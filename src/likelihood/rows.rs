@@ -170,3 +170,46 @@ per_lanes! {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn numbered(n: usize, seed: f64) -> Rows {
+        let mut rows = Rows::zeros(n, n);
+        for i in 0..n {
+            for j in 0..n {
+                rows.plain_mut(i)[j] = (seed + (i * n + j) as f64).sin();
+            }
+        }
+        rows
+    }
+
+    #[test]
+    fn products_of_any_width_are_sums_of_products() {
+        for n in [1, 7, 8, 9, 17, 32, 33, 45] {
+            let (a, b) = (numbered(n, 0.1), numbered(n, 0.7));
+            let (mut product, mut transposed) = (Rows::zeros(n, n), Rows::zeros(n, n));
+            product.product(&a, &b);
+            transposed.transpose(&a);
+            let (mut x, mut y) = (Rows::vector(n), Rows::vector(n));
+            x.numbers_mut().copy_from_slice(&a.plain(0)[..n]);
+            y.product(&x, &b);
+            let mut outer = numbered(n, 0.3);
+            outer.add_product(-0.5, &x, &y);
+            for i in 0..n {
+                for j in 0..n {
+                    let sum: f64 = (0..n).map(|l| a.plain(i)[l] * b.plain(l)[j]).sum();
+                    assert_relative_eq!(product.plain(i)[j], sum, epsilon = 1e-12);
+                    assert_eq!(transposed.plain(j)[i], a.plain(i)[j]);
+                    let before = (0.3 + (i * n + j) as f64).sin();
+                    let after = before - 0.5 * x.numbers()[i] * y.numbers()[j];
+                    assert_relative_eq!(outer.plain(i)[j], after, epsilon = 1e-12);
+                }
+                assert_relative_eq!(y.numbers()[i], product.plain(0)[i], epsilon = 1e-12);
+                assert!(product.plain(i)[n..].iter().all(|&beyond| beyond == 0.0));
+            }
+        }
+    }
+}
