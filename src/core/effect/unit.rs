@@ -112,7 +112,7 @@ mod tests {
     use super::UnitRule::{ChannelPerCoordinate, ChannelPerSecond, Inertia, PerCoordinate};
 
     #[test]
-    fn symbols_that_occur_twice_are_taken_together() {
+    fn a_symbol_stands_once_with_its_power() {
         assert_eq!(ChannelPerCoordinate(1).text("N m", "rad/s"), "N m s/rad");
         assert_eq!(ChannelPerCoordinate(2).text("N", "m/s"), "N s^2/m^2");
         assert_eq!(ChannelPerCoordinate(3).text("V/s^2", "V"), "1/(V^2 s^2)");
