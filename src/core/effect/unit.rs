@@ -45,8 +45,12 @@ impl UnitRule {
     }
 }
 
-/// Powers of units as one unit, symbols that occur twice taken together.
+/// Powers of units as one unit, in which every symbol stands once.
 fn product(of: &[(&str, i32)]) -> String {
+    let stated: Vec<_> = of.iter().filter(|(unit, _)| !unit.is_empty()).collect();
+    if let [(unit, 1)] = stated[..] {
+        return unit.to_string();
+    }
     let mut all: Vec<(String, i32)> = vec![];
     for &(unit, power) in of {
         // a unit that is no product of symbols stays in one piece
@@ -130,6 +134,7 @@ mod tests {
     #[test]
     fn what_is_no_product_stays_in_one_piece() {
         assert_eq!(ChannelPerCoordinate(2).text("N", "m2"), "N/(m2)^2");
+        assert_eq!(ChannelPerCoordinate(1).text("m3/h", ""), "m3/h");
         assert_eq!(ChannelPerCoordinate(1).text("N", "m/s/s"), "N s^2/m");
         assert_eq!(ChannelPerCoordinate(1).text("N", "((m)"), "N/(((m))");
         assert_eq!(ChannelPerSecond.text("km/h", ""), "km/(h s)");

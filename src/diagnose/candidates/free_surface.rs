@@ -13,7 +13,7 @@ use crate::candidates::products::Tensor;
 use crate::candidates::smoothing::{Smoothed, smoothed};
 use crate::candidates::term_columns::Moving;
 use crate::effect::{Effect, View};
-use crate::fit::problem::{Model, Part};
+use crate::fit::problem::{Model, Part, Span};
 use crate::plugins::effects::network::Network;
 use crate::statistics::project;
 use crate::system::Origin;
@@ -66,6 +66,7 @@ impl Drawing<'_, '_> {
         let chosen = self.leading_laws(&at, &targets, &moving, &pairs);
         let laws = moving.len() + pairs.len();
         let (mut surfaces, mut tried) = (vec![], 0);
+        let at_once = |terms: usize| (self.problem.at_once(Span::Fit) / terms).max(1);
         for (number, group) in groups.iter().enumerate() {
             let target = group[0].0;
             let sees = |i: usize| builder.may_see(target, moving[i].source);
@@ -84,7 +85,10 @@ impl Drawing<'_, '_> {
             let mut asked = vec![(vec![0], vec![vec![0]])];
             let single = SINGLE.map(|order| vec![order]).to_vec();
             asked.extend((0..moving.len()).filter_map(of_one).map(|of| (of, single.clone())));
-            let mut found = self.columns(&at, target, &moving, &asked).into_iter();
+            let mut found = asked
+                .chunks(at_once(SINGLE.len()))
+                .take_while(|_| !self.watch.stopped())
+                .flat_map(|laws| self.columns(&at, target, &moving, laws));
             let constant = found.next().unwrap_or_default();
             let of_one = |i| of_one(i).and_then(|_| found.next()).unwrap_or_default();
             let single: Vec<Vec<Vec<f64>>> = (0..moving.len()).map(of_one).collect();
@@ -99,8 +103,12 @@ impl Drawing<'_, '_> {
             }
             let products: Vec<Vec<usize>> = PRODUCTS.iter().map(|p| p.to_vec()).collect();
             let of_two = |&p: &usize| (vec![pairs[p].0, pairs[p].1], products.clone());
-            let asked: Vec<_> = open.iter().map(of_two).collect();
-            let mixed = self.columns(&at, target, &moving, &asked);
+            // columns of so many pairs as there is memory for
+            let of_pairs = open.chunks(at_once(PRODUCTS.len()));
+            let mixed = of_pairs.take_while(|_| !self.watch.stopped()).flat_map(|open| {
+                let asked: Vec<_> = open.iter().map(of_two).collect();
+                self.columns(&at, target, &moving, &asked)
+            });
             for ((a, b), mixed) in open.iter().map(|&p| pairs[p]).zip(mixed) {
                 let columns = [&constant[..], &single[a], &single[b], &mixed].concat();
                 let mut orders = vec![vec![0, 0]];

@@ -9,9 +9,6 @@ use crate::fit::problem::{Grain, Job, Part, Simulated, Span};
 use crate::statistics::project;
 use crate::system::Placed;
 
-/// Laws that are simulated side by side.
-const LAWS_AT_ONCE: usize = 32;
-
 /// A coordinate that moves.
 pub(super) struct Moving {
     pub source: usize,
@@ -33,7 +30,7 @@ impl Moving {
 
 impl Drawing<'_, '_> {
     /// What one unit of each term of some laws does to the outputs, less what nuisance makes up for; a law
-    /// is its coordinates and the orders of its terms. Fewer answers where somebody asks to stop.
+    /// is its coordinates and the orders of its terms.
     pub(super) fn columns(
         &self,
         at: &At<'_>,
@@ -49,27 +46,17 @@ impl Drawing<'_, '_> {
             project(&at.basis, &mut column);
             column
         };
-        let mut answers = vec![];
-        for laws in laws.chunks(LAWS_AT_ONCE).take_while(|_| !self.watch.stopped()) {
-            let jobs: Vec<Option<Job>> = laws
-                .iter()
-                .flat_map(|(of, orders)| {
-                    let of: Vec<&Moving> = of.iter().filter_map(|&i| moving.get(i)).collect();
-                    self.terms(at, target, &of, orders, step)
-                })
-                .collect();
-            let mut columns = self
-                .problem
-                .run_built(&jobs, Span::Fit)
-                .into_par_iter()
-                .map(column)
-                .collect::<Vec<_>>()
-                .into_iter();
-            let own =
-                |(_, orders): &(_, Vec<Vec<usize>>)| columns.by_ref().take(orders.len()).collect();
-            answers.extend(laws.iter().map(own));
-        }
-        answers
+        let jobs: Vec<Option<Job>> = laws
+            .iter()
+            .flat_map(|(of, orders)| {
+                let of: Vec<&Moving> = of.iter().filter_map(|&i| moving.get(i)).collect();
+                self.terms(at, target, &of, orders, step)
+            })
+            .collect();
+        let outputs = self.problem.run_built(&jobs, Span::Fit);
+        let columns: Vec<Vec<f64>> = outputs.into_par_iter().map(column).collect();
+        let mut columns = columns.into_iter();
+        laws.iter().map(|(_, orders)| columns.by_ref().take(orders.len()).collect()).collect()
     }
 
     /// Simulations of a law with one of its terms each.
