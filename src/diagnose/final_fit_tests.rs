@@ -56,6 +56,7 @@ fn what_diverges_in_the_end_loses_its_last_cause() {
         nothing: 0.0,
         off: Off::default(),
         withdrawn: vec![],
+        refuted: vec![],
     };
     let held = Nuisance::new(&prepared.problem, &prepared.nominal);
     let Prepared { problem, nominal, start, .. } = &mut prepared;

@@ -19,6 +19,7 @@ mod evidence;
 mod final_fit;
 mod findings;
 mod fit;
+mod guard;
 mod innovations;
 mod memory;
 mod mended;

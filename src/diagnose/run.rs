@@ -10,6 +10,7 @@ use super::findings::distortion::distortion;
 use super::findings::finding::{Finding, RecordFacts, Verdict};
 use super::findings::hand_over::{Around, Looked, Searched};
 use super::fit::finished::Finished;
+use super::guard::guarded;
 use super::innovations;
 use super::mended::Mended;
 use super::prepare::integration_error::unresolved;
@@ -229,8 +230,9 @@ impl Diagnosis<'_> {
         watch: &dyn Watch,
     ) -> Result<Searched, DiagnoseError> {
         let (used, test) = (searchable(records, test), self.scoring(records, test));
-        let Chosen { whole, looked_at, chosen, other } = answer;
+        let Chosen { mut whole, looked_at, chosen, other } = answer;
         watch.report(0.97, "measuring the gain");
+        let chosen = guarded(&mut whole, chosen, &test, watch)?;
         let firsts = firsts(records);
         let start = &whole.start;
         let from = Source { start, test: &test, used: &used, firsts: &firsts, watch };

@@ -274,6 +274,9 @@ pub struct Withdrawn {
     pub cause: Cause,
     /// RMSE on the test data with it over that without it, averaged over the outputs.
     pub test_rmse_ratio: f64,
+    /// Whether the test data refute it: the extended model would predict them worse than the model handed
+    /// in. Else the part of the records that chooses does.
+    pub by_test: bool,
 }
 
 /// The missing force at one channel: what has to be added there for the model to follow the record,

@@ -1,5 +1,6 @@
 //! Causes that data speak against on which nothing was fitted.
 
+use crate::candidates::candidate::Wire;
 use crate::error::DiagnoseError;
 use crate::findings::cause::{Cause, Value, Withdrawn};
 use crate::findings::context::Context;
@@ -9,23 +10,53 @@ use crate::fit::problem::Added;
 use crate::validate::test_error::{Scored, TestData};
 
 impl Context<'_, '_> {
-    /// What the search took back, with what it would do to the test data: `after` are the errors of
-    /// the extended model without it.
+    /// What the search and the guard took back, with what it would do to the test data: `after` are the
+    /// errors of the extended model without it.
     pub(crate) fn withdrawn(
         &self,
         chosen: &Finished,
         test: &TestData,
         after: &Scored,
     ) -> Result<Vec<Withdrawn>, DiagnoseError> {
-        let one = |added: &Added| {
+        let one = |added: &Added, by_test: bool| {
             let Added { cause, parameters } = added;
             let with = test.score(&extended(
                 self.problem,
                 &chosen.fitted.model.with(cause, parameters.clone()),
             )?)?;
-            Ok(Withdrawn { cause: as_cause(added), test_rmse_ratio: ratio(&with, after) })
+            let test_rmse_ratio = ratio(&with, after);
+            Ok(Withdrawn { cause: self.as_cause(added), test_rmse_ratio, by_test })
         };
-        chosen.found.withdrawn.iter().map(one).collect()
+        let found = &chosen.found;
+        let by_search = found.withdrawn.iter().map(|added| one(added, false));
+        by_search.chain(found.refuted.iter().map(|added| one(added, true))).collect()
+    }
+
+    /// A cause with the numbers of the search, of which nothing more was asked.
+    fn as_cause(&self, added: &Added) -> Cause {
+        let cause = &added.cause;
+        let nominal = match cause.wire {
+            Wire::Parameter(p) => Some(self.problem.base.signals.parameters[p].value),
+            _ => None,
+        };
+        let value = |&i: &usize| Value {
+            name: cause.card.parameters[i].name.to_string(),
+            value: nominal.unwrap_or(0.0) + added.parameters[i],
+            std_error: None,
+            unit: cause.card.parameters[i].unit.text(&cause.units.0, &cause.units.1),
+        };
+        let parameters: Vec<Value> = cause.linear.iter().chain(&cause.refine).map(value).collect();
+        Cause {
+            effect: cause.effect.into(),
+            into: cause.into.clone(),
+            of: cause.of.clone(),
+            also_into: cause.also_into.iter().map(|a| a.channel().to_string()).collect(),
+            also_of: cause.also_of.clone(),
+            parts: vec![cause.as_part(&parameters)],
+            parameters,
+            wording: cause.wording(nominal),
+            ..Cause::default()
+        }
     }
 }
 
@@ -35,29 +66,6 @@ fn ratio(of: &Scored, over: &Scored) -> f64 {
         of.metrics.iter().filter_map(|(name, m)| Some((m.rmse, over.metrics.get(name)?.rmse)));
     let ratios: Vec<f64> = both.filter(|(_, b)| *b > 0.0).map(|(a, b)| a / b).collect();
     if ratios.is_empty() { 1.0 } else { ratios.iter().sum::<f64>() / ratios.len() as f64 }
-}
-
-/// A cause with the numbers of the search, of which nothing more was asked.
-fn as_cause(added: &Added) -> Cause {
-    let cause = &added.cause;
-    let value = |&i: &usize| Value {
-        name: cause.card.parameters[i].name.to_string(),
-        value: added.parameters[i],
-        std_error: None,
-        unit: cause.card.parameters[i].unit.text(&cause.units.0, &cause.units.1),
-    };
-    let parameters: Vec<Value> = cause.linear.iter().chain(&cause.refine).map(value).collect();
-    Cause {
-        effect: cause.effect.into(),
-        into: cause.into.clone(),
-        of: cause.of.clone(),
-        also_into: cause.also_into.iter().map(|a| a.channel().to_string()).collect(),
-        also_of: cause.also_of.clone(),
-        parts: vec![cause.as_part(&parameters)],
-        parameters,
-        wording: cause.wording(None),
-        ..Cause::default()
-    }
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@ use crate::fit::refit::Fitted;
 use crate::model::Signals;
 
 /// Standard errors beyond which a parameter counts as moved.
-const MOVED: f64 = 3.0;
+pub(crate) const MOVED: f64 = 3.0;
 
 /// One track, finished.
 pub(crate) struct Finished {
@@ -82,6 +82,11 @@ impl Finished {
     /// How many causes it added; those of a finding begin with them.
     pub fn causes(&self) -> usize {
         self.fitted.model.added.len()
+    }
+
+    /// Whether parameters moved beside its causes, those that no error tells from none included.
+    pub fn has_moved(&self) -> bool {
+        !self.nuisance.free.is_empty()
     }
 
     /// Whether its numbers were fitted to innovations, not to a free run.

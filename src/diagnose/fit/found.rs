@@ -81,6 +81,18 @@ pub(crate) struct Off {
     pub all: f64,
     /// That one is while the others are right, by its index.
     pub single: Vec<f64>,
+    /// Laws that do what the value of a parameter does.
+    pub instead: Vec<Instead>,
+}
+
+/// A law that data cannot tell from another value of a parameter.
+#[derive(Debug, Clone)]
+pub(crate) struct Instead {
+    /// Index of the parameter, which stays at its nominal value beside the law.
+    pub parameter: usize,
+    pub cause: Arc<Candidate>,
+    /// Probability of the law.
+    pub probability: f64,
 }
 
 /// What a search ended with.
@@ -103,4 +115,6 @@ pub(crate) struct Found {
     pub off: Off,
     /// Causes that were taken back: samples that were not fitted are more probable without them.
     pub withdrawn: Vec<Added>,
+    /// Causes that were taken back because the test data are predicted worse with them.
+    pub refuted: Vec<Added>,
 }

@@ -3,17 +3,21 @@
 use crate::candidates::naming::{parameter_effect, title_of};
 use crate::error::DiagnoseError;
 use crate::evidence::has_moved;
-use crate::findings::cause::{Cause, LawPart, Site, Value, Wording};
+use crate::findings::cause::{Alternative, Cause, LawPart, Site, Value, Wording};
 use crate::findings::causes::Scores;
 use crate::findings::context::Context;
 use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
+use crate::fit::found::{Instead, SET};
 use crate::fit::nuisance::Key;
 use crate::fit::problem::Model;
 use crate::fit::refit::{Refit, Stop, refit_until};
 use crate::validate::false_discovery::{either, on_test};
 use crate::validate::test_error::removed;
 use crate::watch::Watch;
+
+/// Others that are said beside a set.
+const OTHERS: usize = 4;
 
 impl Context<'_, '_> {
     /// Parameters that the chosen track moved, as causes.
@@ -46,6 +50,7 @@ impl Context<'_, '_> {
             };
             let probability = self.probability_of(chosen, p);
             let effect = parameter_effect();
+            let (indistinguishable, runners_up) = self.alike(chosen, &moved.name, share);
             causes.push(Cause {
                 effect: effect.into(),
                 into: moved.name.clone(),
@@ -71,8 +76,8 @@ impl Context<'_, '_> {
                 // a parameter is a place of its own
                 place_probability: probability,
                 error_removed: share,
-                indistinguishable: vec![],
-                runners_up: vec![],
+                indistinguishable,
+                runners_up,
                 onset: None,
                 acts_where: None,
                 most_like: None,
@@ -81,6 +86,38 @@ impl Context<'_, '_> {
             });
         }
         Ok(causes)
+    }
+
+    /// Laws that do what a parameter does, and those beyond the members of a set: of the first one also
+    /// those in the stead of parameters that are not named, which it stands for.
+    fn alike(
+        &self,
+        chosen: &Finished,
+        name: &str,
+        share: f64,
+    ) -> (Vec<Alternative>, Vec<Alternative>) {
+        let parameters = &self.problem.base.signals.parameters;
+        let is_named = |p: usize| chosen.moved.iter().any(|one| one.name == parameters[p].name);
+        let is_first = chosen.moved.first().is_some_and(|first| first.name == name);
+        let off = &chosen.found.off;
+        let own = off.instead.iter().filter(|one| {
+            parameters[one.parameter].name == name || is_first && !is_named(one.parameter)
+        });
+        let mut own: Vec<&Instead> = own.collect();
+        own.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        let mut alike: Vec<Alternative> = vec![];
+        for one in own {
+            let said = one.cause.alternative(share).weighed(one.probability);
+            let same = |known: &Alternative| {
+                (&known.effect, &known.into, &known.of) == (&said.effect, &said.into, &said.of)
+            };
+            if !alike.iter().any(same) {
+                alike.push(said);
+            }
+        }
+        let mut others = alike.split_off((SET - 1).min(alike.len()));
+        others.truncate(OTHERS);
+        (alike, others)
     }
 
     /// Probability that a parameter is off: with all others free, or it alone. `None` where nothing is known of

@@ -18,6 +18,7 @@ use crate::fit::hypothesis::Track;
 use crate::fit::nuisance::{Key, Nuisance};
 use crate::fit::problem::{Added, Grain, Model, Part};
 use crate::fit::refit::Fitted;
+use crate::prepare::input_dependence::dependence;
 use crate::prepare::prepared::Prepared;
 use crate::system::Placed;
 
@@ -87,6 +88,7 @@ pub(super) fn finished(
             nothing: found.nothing,
             off: Off::default(),
             withdrawn,
+            refuted: vec![],
         },
         fitted: Fitted { model, keys, columns: vec![], residuals },
         nuisance: Nuisance::new(problem, &prepared.nominal),
@@ -130,6 +132,32 @@ pub(super) fn carried_over(
     of.found.spikes = problem.spikes();
     of.found.model = of.fitted.model.clone();
     of.nuisance = Nuisance::new(problem, &prepared.nominal);
+    Ok(of)
+}
+
+/// A finding of innovations without one of its laws: the numbers of the others as they are.
+pub(crate) fn without(
+    prepared: &Prepared<'_>,
+    mut of: Finished,
+    gone: usize,
+) -> Result<Finished, DiagnoseError> {
+    let problem = &prepared.problem;
+    of.fitted.model.added.remove(gone);
+    let left = |key: &Key| match *key {
+        Key::EffectParameter(a, _) if a == gone => None,
+        Key::EffectParameter(a, i) if a > gone => Some(Key::EffectParameter(a - 1, i)),
+        other => Some(other),
+    };
+    let stay: Vec<Key> = of.fitted.keys.iter().copied().filter(|k| left(k).is_some()).collect();
+    of.fitted.keys = stay.iter().filter_map(left).collect();
+    let known = of.precision.as_ref().and_then(|precision| precision.between(&stay));
+    of.precision = known.map(|covariance| Precision::of(of.fitted.keys.clone(), covariance));
+    let y = problem.simulate(&of.fitted.model, Grain::Fine);
+    of.y = y.ok_or_else(|| prepared.diverges())?;
+    of.fitted.residuals = problem.residual(&of.y, Part::All);
+    of.found.model = of.fitted.model.clone();
+    // what it foresaw is not foreseen any more
+    of.dependence = dependence(problem, &prepared.nominal, &of.y);
     Ok(of)
 }
 
@@ -198,11 +226,14 @@ fn on_its_path<'a>(
         c.twins.iter().find(own).map(|(_, _, factor)| *factor)
     };
     let factor = path().find_map(twin)?;
+    if placed.effect.card().parameters.len() != 1 {
+        return None;
+    }
     let probes = [-2.0, -0.5, 0.3, 1.0];
     let wanted = curve(placed.effect.as_ref(), &[1.0], &probes);
     let plain = |c: &&Arc<Candidate>| {
-        let one = c.card.parameters.len() == 1 && placed.effect.card().parameters.len() == 1;
-        one && c.linear == [0] && curve(c.shape.as_ref(), &[1.0], &probes) == wanted
+        let one = c.card.parameters.len() == 1 && c.linear == [0];
+        one && curve(c.shape.as_ref(), &[1.0], &probes) == wanted
     };
     Some((path().find(plain)?, factor))
 }

@@ -22,5 +22,6 @@ mod reconsidered;
 mod unforeseen;
 
 pub(crate) use compete::{criterion, free_run_criterion, innovations_of};
+pub(crate) use conversion::without;
 pub(crate) use missing::completed;
-pub(crate) use reconsidered::{finish, search};
+pub(crate) use reconsidered::{finish, forgets, search};

@@ -108,6 +108,12 @@ fn drifts_in_a_loop(prepared: &Prepared<'_>, allowed: &Allowed) -> Option<bool> 
     Some(prepared.context().feedback_of(&foreseen).is_some())
 }
 
+/// Whether the model that is diagnosed forgets where it starts within its records.
+pub(crate) fn forgets(prepared: &Prepared<'_>) -> bool {
+    let base = predictor(&prepared.problem, &prepared.start, prepared.allowed()).ok();
+    base.and_then(|base| base.forgets().ok()).unwrap_or(true)
+}
+
 /// Whether noise inside the plant is clearly more probable beside an answer.
 fn is_called_for(prepared: &Prepared<'_>, allowed: &Allowed, of: &Finished) -> Option<bool> {
     let (_, known) = predictors(prepared, allowed, of)?;

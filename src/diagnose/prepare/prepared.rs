@@ -8,6 +8,7 @@ use crate::evaluate::{EvaluateError, Init, Run};
 use crate::final_fit::Tracks;
 use crate::findings::context::Context;
 use crate::fit::finished::Finished;
+use crate::fit::found::Found;
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Grain, Model, Problem};
 use crate::memory::Memory;
@@ -134,16 +135,30 @@ impl<'a> Prepared<'a> {
             Track::ParametersTrusted => trusted,
             Track::ParametersFree => trusted.with_parameters(&self.problem, &allowed.fixed),
         };
-        let mut model = found.fitted.model;
-        model.starts.clone_from(&self.start.starts);
-        let mut of_all = found.found;
-        of_all.model = model;
-        if let Some(y) = self.problem.simulate(&of_all.model, Grain::Fine) {
+        let mut found = found;
+        found.fitted.model.starts.clone_from(&self.start.starts);
+        if let Some(y) = self.problem.simulate(&found.fitted.model, Grain::Fine) {
             self.problem.flag_spikes(&y);
         }
-        of_all.spikes = self.problem.spikes();
-        let finished = self.tracks(allowed, 0, &()).finish(found.track, of_all, nuisance);
+        found.found.spikes = self.problem.spikes();
+        self.finish_beside(found, nuisance)
+    }
+
+    /// The final fit of the model of an answer, beside what moves.
+    pub fn finish_beside(
+        &mut self,
+        of: Finished,
+        nuisance: Nuisance,
+    ) -> Result<Finished, DiagnoseError> {
+        let found = Found { model: of.fitted.model, ..of.found };
+        let allowed = self.allowed.clone();
+        let finished = self.tracks(&allowed, 0, &()).finish(of.track, found, nuisance);
         finished.ok_or_else(|| self.diverges())
+    }
+
+    /// What may be named.
+    pub fn allowed(&self) -> &Allowed {
+        &self.allowed
     }
 
     fn tracks<'t>(

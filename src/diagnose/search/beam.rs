@@ -178,6 +178,12 @@ impl Beam {
         self.within(AS_GOOD).min_by(compared)
     }
 
+    /// Probability of one more model, by the logarithm of its posterior.
+    pub fn probability_of_another(&self, posterior: f64) -> f64 {
+        let others = self.fits().map(|fit| (fit.posterior() - posterior).exp());
+        1.0 / (1.0 + others.sum::<f64>())
+    }
+
     /// Probability that a condition holds.
     pub fn probability(&self, holds: impl Fn(&Fit) -> bool) -> f64 {
         let top = self.best().map_or(0.0, Fit::posterior);
@@ -208,6 +214,8 @@ mod tests {
         assert!(beam.keep(fit(true, 4.0)));
         let expected = 1.0 / (1.0 + 1f64.exp());
         assert!((beam.probability(|fit| !fit.free) - expected).abs() < 1e-12);
+        let alike = beam.probability_of_another(fit(true, 4.0).posterior());
+        assert!((alike - 1.0 / (2.0 + (-1f64).exp())).abs() < 1e-12);
         // within what is as good, the plainer one is told
         assert!(!beam.headline().unwrap().free);
         beam.keep(fit(true, 9.0));

@@ -29,20 +29,25 @@ const ITERATIONS: (usize, usize) = (2, 6);
 const POLISHED: f64 = 8.0;
 
 /// What is known about the model that a round starts from.
-struct Ground {
-    fit: Fit,
-    tangents: Vec<(Key, Vec<f64>)>,
+pub(super) struct Ground {
+    pub fit: Fit,
+    pub tangents: Vec<(Key, Vec<f64>)>,
     basis: Vec<Vec<f64>>,
     contributions: Vec<Option<Vec<f64>>>,
 }
 
 impl Ground {
-    fn new(study: &Study<'_, '_>, fit: Fit) -> Self {
+    pub fn new(study: &Study<'_, '_>, fit: Fit) -> Self {
         let tangents = tangents(study.problem, study.nuisance(fit.free), &fit.model, &fit.residual);
         let contributions = contributions(study.problem, &fit.model, &fit.residual);
+        Self { contributions, ..Self::of(fit, tangents) }
+    }
+
+    /// A model with its tangents; of its causes nothing more is known.
+    pub fn of(fit: Fit, tangents: Vec<(Key, Vec<f64>)>) -> Self {
         let mut basis = vec![];
         tangents.iter().for_each(|(_, c)| add_to_basis(&mut basis, c.clone()));
-        Self { fit, tangents, basis, contributions }
+        Self { fit, tangents, basis, contributions: vec![] }
     }
 
     fn standing(&self, study: &Study<'_, '_>) -> Standing<'_> {
@@ -145,7 +150,7 @@ fn causes(fit: &Fit) -> Vec<String> {
 
 /// Looks again about a model at what is wanted, and with `plain` at every law of one number; what was
 /// not looked at again stays what it was. How many items, the first ones, are fresh.
-fn refresh(
+pub(super) fn refresh(
     study: &Study<'_, '_>,
     ground: &Ground,
     items: &mut Vec<Item>,

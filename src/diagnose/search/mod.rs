@@ -23,6 +23,7 @@ mod dictionary;
 mod fits;
 #[cfg(test)]
 pub(crate) mod fixture;
+mod instead;
 mod item;
 mod laws;
 mod leading;
@@ -31,6 +32,7 @@ mod moves;
 mod nameless;
 mod neighbours;
 mod open_loop;
+mod put_back;
 mod ranked;
 mod run;
 mod selected;

@@ -7,6 +7,7 @@ use super::beam::{Fit, SetKey};
 use super::chain::{ROUNDS, chain};
 use super::contribution::tangents;
 use super::fits::Wish;
+use super::instead::instead_of_parameters;
 use super::laws::{Asked, laws_of_places};
 use super::nameless::nameless;
 use super::selected::{ranking, slots};
@@ -262,6 +263,7 @@ fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched
     study.concludes = true;
     let (headline, withdrawn) = vetoed(&mut study)?;
     let nothing = study.beam.probability(Fit::is_nothing);
+    let instead = instead_of_parameters(&mut study, &headline);
     let found = Found {
         slots: slots(study.problem, &study.beam, &headline),
         model: headline.model.clone(),
@@ -271,8 +273,9 @@ fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched
         spikes: study.problem.spikes(),
         full: headline.causes() >= study.most && study.most > 0,
         nothing,
-        off: off(&study),
+        off: Off { instead, ..off(&study) },
         withdrawn,
+        refuted: vec![],
     };
     let nuisance = study.nuisance(headline.free).clone();
     Some(Searched { found, free: headline.free, nuisance })
@@ -288,6 +291,7 @@ fn off(study: &Study<'_, '_>) -> Off {
     Off {
         all: study.beam.probability(|fit| fit.free),
         single: parameters.map(|p| study.beam.probability(|fit| has(fit, p))).collect(),
+        instead: vec![],
     }
 }
 

@@ -101,3 +101,39 @@ fn nothing_is_named_where_nothing_is_hidden() {
     assert!(finding.causes.is_empty() && finding.withdrawn.is_empty());
     assert!(finding.verdict_probability.unwrap() > 0.5);
 }
+
+/// All states and the output larger by a factor: as another mass, damper and spring.
+#[test]
+fn a_scale_of_the_sensor_is_a_look_alike_of_the_parameters_that_do_the_same() {
+    let text = |effects: &str| {
+        format!(
+            r#"
+sampling_time = 0.05
+[model.equations]
+inputs = [{{ name = "u" }}]
+states = [{{ name = "x", derivative = "v" }}, {{ name = "v", derivative = "(u - k*x - c*v)/m" }}]
+outputs = [{{ name = "y", value = "x" }}]
+parameters = [{{ name = "m", value = 1.0 }}, {{ name = "c", value = 0.8 }}, {{ name = "k", value = 4.0 }}]
+{effects}"#
+        )
+    };
+    let system = |text: &str| -> System {
+        parse(text, "mass.toml", Format::Toml).unwrap_or_else(|e| panic!("{}", e.pretty()))
+    };
+    let hidden = "[[effects]]\ninto = \"y\"\nof = \"y\"\neffect.gain = { gain = 0.2 }\n";
+    // beside it all parameters are off, so that they are asked to move
+    let machine = text(hidden).replace("0.8", "0.9").replace("4.0", "4.3").replace("1.0", "1.04");
+    let record = record(&system(&machine), 0.02);
+    let baseline = system(&text(""));
+    let only = ["gain", "cubic", "bias", "parameter"].map(String::from);
+    let diagnosis = Diagnosis::of(&baseline).only(&only);
+    let finding = diagnosis.run(std::slice::from_ref(&record), None, &()).unwrap();
+    let is_parameter = |cause: &&crate::findings::cause::Cause| cause.is_parameter();
+    let moved: Vec<_> = finding.causes.iter().filter(is_parameter).collect();
+    assert_eq!(moved.len(), finding.causes.len(), "{finding}");
+    let is_gain = |a: &crate::findings::cause::Alternative| a.effect == "gain" && a.into == "y";
+    let alike: Vec<_> =
+        moved.iter().flat_map(|cause| &cause.indistinguishable).filter(|a| is_gain(a)).collect();
+    assert!(!alike.is_empty(), "{finding}");
+    assert!(alike.iter().all(|a| a.probability.is_some_and(|p| p < 0.5)), "{alike:?}");
+}

@@ -91,7 +91,17 @@ impl<'a, 'b> Study<'a, 'b> {
     /// Fits, none of them kept yet; none where somebody asks to stop, but to conclude or where nothing is
     /// known.
     pub fn fit(&self, free: bool, wishes: &[Wish], iterations: usize) -> Vec<Fit> {
-        let (problem, nuisance) = (&*self.problem, self.nuisance(free));
+        self.fit_beside(self.nuisance(free), free, wishes, iterations)
+    }
+
+    /// The same where something else moves beside causes.
+    pub fn fit_beside(
+        &self,
+        nuisance: &Nuisance,
+        free: bool,
+        wishes: &[Wish],
+        iterations: usize,
+    ) -> Vec<Fit> {
         let asked = || self.watch.stopped();
         let stop = match self.beam.best() {
             None => Stop::Keep(&asked),
@@ -100,7 +110,7 @@ impl<'a, 'b> Study<'a, 'b> {
         };
         let judge = Judge {
             stop,
-            problem,
+            problem: self.problem,
             nuisance,
             free,
             disturbance: &self.disturbance,

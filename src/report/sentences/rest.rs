@@ -10,6 +10,8 @@ use crate::evaluate::Metrics;
 
 /// Names in one list at most.
 const NAMES: usize = 5;
+/// Probability below which it is said why the data speak for something that is not sure.
+const RARE: f64 = 0.05;
 
 /// Everything below the headline.
 pub fn details(finding: &Finding) -> Vec<String> {
@@ -35,7 +37,13 @@ pub fn look_alikes(finding: &Finding, cause: &Cause) -> Option<String> {
     }
     let others = cause.indistinguishable.iter().map(|other| alternative(&finding.held, other));
     let others: Vec<String> = others.collect();
-    Some(format!("  the data cannot tell {} from: {}", super::place_of(cause), others.join("; ")))
+    let are_rare = cause.indistinguishable.iter().all(|a| a.probability.is_some_and(|p| p < RARE));
+    let why = match cause.is_parameter() && are_rare {
+        true => "; less sure only because a value that is a little wrong is more usual than a law",
+        false => "",
+    };
+    let (own, others) = (super::place_of(cause), others.join("; "));
+    Some(format!("  the data cannot tell {own} from: {others}{why}"))
 }
 
 pub(super) fn alternative(held: &[String], other: &Alternative) -> String {
@@ -189,12 +197,18 @@ pub(super) fn supposed_right(held: &[String]) -> Option<String> {
 /// A cause that data refute which were not fitted, and what the test data say to that.
 pub fn withdrawn(withdrawn: &Withdrawn) -> String {
     let ratio = withdrawn.test_rmse_ratio;
+    let (place, ratio_said) = (super::place_of(&withdrawn.cause), number(ratio, None));
+    if withdrawn.by_test {
+        return format!(
+            "Withdrawn: {place}. The test data refute it: with it they are predicted worse than by the \
+             model that was handed in (RMSE times {ratio_said} with it); the extended model does not have \
+             it."
+        );
+    }
     let test = if ratio > 1.0 { "and so do the test data" } else { "though the test data do not" };
     format!(
-        "Withdrawn: {}. The part of the records that was not fitted speaks against it, {test} (RMSE \
-         times {} with it); the extended model does not have it.",
-        super::place_of(&withdrawn.cause),
-        number(ratio, None)
+        "Withdrawn: {place}. The part of the records that was not fitted speaks against it, {test} (RMSE \
+         times {ratio_said} with it); the extended model does not have it."
     )
 }
 

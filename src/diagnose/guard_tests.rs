@@ -1,0 +1,72 @@
+//! What the test data refute is taken back.
+
+use super::*;
+use crate::Diagnosis;
+use crate::data::{Random, Record};
+use crate::evaluate::{Init, Simulation};
+use crate::system::System;
+use lacuna_core::file::{Format, parse};
+
+const MODEL: &str = r#"
+sampling_time = 0.05
+[model.equations]
+inputs = [{ name = "u" }]
+states = [{ name = "x", derivative = "v" }, { name = "v", derivative = "u - k*x - 0.8*v" }]
+outputs = [{ name = "y", value = "x" }]
+parameters = [{ name = "k", value = 4.0, fixed = true }]
+channels = [{ name = "f", into = [{ state = "v", gain = "1" }] }]
+"#;
+
+fn system(effects: &str) -> System {
+    let text = format!("{MODEL}{effects}");
+    parse(&text, "mass.toml", Format::Toml).unwrap_or_else(|e| panic!("{}", e.pretty()))
+}
+
+fn record(machine: &System, seed: u64, size: f64) -> Record {
+    let mut random = Random::new(seed);
+    let mut u = vec![0.0; 1200];
+    for k in 1..u.len() {
+        u[k] = 0.9 * u[k - 1] + size * random.normal();
+    }
+    let driven = Record::new(0.05).input("u", u).unwrap();
+    let run = Simulation::of(machine, &driven, Init::Samples(0)).unwrap();
+    let y = run.outputs.into_iter().next().unwrap().1;
+    let y: Vec<f64> = y.into_iter().map(|y| y + 0.02 * random.normal()).collect();
+    driven.output("y", y).unwrap()
+}
+
+const HARD: &str = "[[effects]]\ninto = \"f\"\nof = \"x\"\neffect.cubic = { coefficient = -2.0 }\n";
+const SOFT: &str = "[[effects]]\ninto = \"f\"\nof = \"x\"\neffect.cubic = { coefficient = 0.3 }\n";
+
+/// The spring of the test record softens where that of the other records hardens.
+#[test]
+fn a_cause_that_the_test_record_refutes_is_withdrawn_and_the_model_does_not_have_it() {
+    let only = ["cubic", "drag", "bias"].map(String::from);
+    let baseline = system("");
+    let diagnosis = Diagnosis::of(&baseline).only(&only);
+    let records = [record(&system(HARD), 1, 1.0)];
+    let named = diagnosis.run(&records, Some(&record(&system(HARD), 2, 1.0)), &()).unwrap();
+    assert_eq!((named.causes.len(), named.withdrawn.len()), (1, 0), "{named}");
+    let finding = diagnosis.run(&records, Some(&record(&system(SOFT), 2, 0.5)), &()).unwrap();
+    assert!(finding.causes.is_empty(), "{finding}");
+    let withdrawn = &finding.withdrawn[0];
+    assert_eq!((&withdrawn.cause.effect[..], withdrawn.by_test), ("cubic", true));
+    assert!(withdrawn.test_rmse_ratio > LEAVES.sqrt());
+    assert_eq!(finding.verdict, crate::Verdict::Unexplained);
+    let (before, after) = (&finding.before.test["y"], &finding.after.test["y"]);
+    assert_eq!(before.rmse, after.rmse);
+    assert!(finding.extended.effects.is_empty());
+}
+
+#[test]
+fn a_run_that_leaves_the_finite_numbers_is_worse_than_any() {
+    let scored = |errors: Vec<f64>| Scored { errors: vec![errors, vec![]], ..Scored::default() };
+    let plain = scored(vec![1.0, -1.0, f64::NAN]);
+    assert_eq!(ratio(&plain, &plain), 1.0);
+    assert_eq!(ratio(&scored(vec![2.0, -2.0, f64::NAN]), &plain), 4.0);
+    assert_eq!(ratio(&scored(vec![f64::INFINITY; 3]), &plain), f64::INFINITY);
+    let early = scored(vec![1.0, f64::NAN, f64::NAN]);
+    assert_eq!(ratio(&early, &plain), f64::INFINITY, "it ran away after a sample");
+    let late = scored(vec![f64::NAN, -1.0, f64::NAN]);
+    assert_eq!(ratio(&late, &plain), 1.0, "it forgets its start a sample later");
+}
