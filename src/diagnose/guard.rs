@@ -7,9 +7,10 @@
 //! mean over outputs of e_extended^2 / e_handed_in^2 <= LEAVES
 //! ```
 //!
-//! the bound that the search has for what it fits. While it is exceeded, that law goes, or the move of the
-//! parameters, whose going makes the ratio least, and the rest is fitted again (backward elimination: Miller,
-//! "Subset Selection in Regression", 2002). A model that does not forget its start within its records is not
+//! the bound that the search has for what it fits. What exceeds it is no hypothesis any more. Of the models
+//! with one law less, or without the move of the parameters, that do not, the most probable one by the records
+//! that were fitted is the answer; where all do, the one that exceeds it least is looked at in the same way
+//! (backward elimination: Miller, "Subset Selection in Regression", 2002). A model that does not forget its start within its records is not
 //! asked: what its simulation leaves is chance there (Forssell and Ljung, IEEE Trans. Automatic Control 45,
 //! 2000).
 
@@ -24,6 +25,7 @@ use crate::fit::finished::Finished;
 use crate::fit::hypothesis::Track;
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Added, Model};
+use crate::fit::refit::{Refit, Stop};
 use crate::innovations;
 use crate::prepare::prepared::Prepared;
 use crate::validate::test_error::{Scored, TestData, mean_square};
@@ -81,16 +83,32 @@ pub(crate) fn guarded(
             return Ok(answer);
         }
         watch.report(0.97, "taking back what the test data refute");
-        let mut best: Option<(f64, Going, Model)> = None;
+        let mut best: Option<((f64, f64), Going, Model)> = None;
         for going in may_go {
             let Some(model) = without(prepared, &answer, going, watch) else { continue };
             let left = leaves(&model)?;
-            if best.as_ref().is_none_or(|(least, ..)| left < *least) {
-                best = Some((left, going, model));
+            let worth = match left <= LEAVES {
+                true => {
+                    innovations::criterion_of(prepared, &model, numbers(&answer, &model, going))
+                }
+                false => f64::NEG_INFINITY,
+            };
+            let order = (worth, -left);
+            if best.as_ref().is_none_or(|(most, ..)| order > *most) {
+                best = Some((order, going, model));
             }
         }
         let Some((_, going, model)) = best else { return Ok(answer) };
         answer = less(prepared, answer, going, model)?;
+    }
+}
+
+/// How many numbers a model has that an answer has without something.
+fn numbers(answer: &Finished, model: &Model, going: Going) -> usize {
+    let laws: usize = model.added.iter().map(|added| added.cause.unknowns()).sum();
+    match going {
+        Going::Law(_) => laws + answer.nuisance.free.len(),
+        Going::Parameters => laws,
     }
 }
 
@@ -108,7 +126,11 @@ fn without(
         Going::Parameters => {
             let mut back = model.clone();
             back.theta.clone_from(&prepared.start.theta);
-            Some(back)
+            let held = Nuisance::new(&prepared.problem, &prepared.nominal);
+            let asked = || watch.stopped();
+            let how = (Refit::last(), Stop::Keep(&asked));
+            let back = std::slice::from_ref(&back);
+            answer.refit(&prepared.problem, &held, back, how).swap_remove(0).map(|f| f.model)
         }
     }
 }

@@ -24,4 +24,4 @@ mod unforeseen;
 pub(crate) use compete::{criterion, free_run_criterion, innovations_of};
 pub(crate) use conversion::without;
 pub(crate) use missing::completed;
-pub(crate) use reconsidered::{finish, forgets, search};
+pub(crate) use reconsidered::{criterion_of, finish, forgets, search};

@@ -114,6 +114,17 @@ pub(crate) fn forgets(prepared: &Prepared<'_>) -> bool {
     base.and_then(|base| base.forgets().ok()).unwrap_or(true)
 }
 
+/// How probable a model is on the records, under the noise that suits it best, so many numbers being paid
+/// for; a logarithm, but for a constant of the records.
+pub(crate) fn criterion_of(prepared: &Prepared<'_>, model: &Model, numbers: usize) -> f64 {
+    let base = predictor(&prepared.problem, model, prepared.allowed()).ok();
+    let known = base.as_ref().and_then(|base| extended_by(base, &prepared.problem, model));
+    let of = |known: &Predictor| {
+        Rivals::of(known).best() - 0.5 * numbers as f64 * (known.samples() as f64).ln()
+    };
+    known.as_ref().map_or(f64::NEG_INFINITY, of)
+}
+
 /// Whether noise inside the plant is clearly more probable beside an answer.
 fn is_called_for(prepared: &Prepared<'_>, allowed: &Allowed, of: &Finished) -> Option<bool> {
     let (_, known) = predictors(prepared, allowed, of)?;
