@@ -158,7 +158,7 @@ fn less(
         }
     }
     answer.fitted.model = model;
-    prepared.finish_beside(answer, nuisance)
+    prepared.finish_with(answer, nuisance)
 }
 
 /// The parameters that an answer moved, as causes.

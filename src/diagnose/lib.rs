@@ -39,14 +39,14 @@ pub use error::DiagnoseError;
 pub use findings::active_range::ActsWhere;
 pub use findings::cause::{
     Alternative, Cause, ColumnFault, ExplainedBy, FoundShape, LawPart, MissingForce, MostLike,
-    Onset, Site, Unweighed, Value, Withdrawn, Wording,
+    Onset, Site, Unweighed, Value, Wording,
 };
 pub use findings::closed_loop::ClosedLoop;
 pub use findings::distortion::{AtLines, Distortion, distortion};
 pub use findings::error_band::Regime;
 pub use findings::finding::{
     FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores,
-    SingleRecord, Verdict,
+    SingleRecord, Verdict, Withdrawn,
 };
 pub use findings::note::{Disturbance, Disturbs, Follows, Note, Released};
 pub use findings::per_record::InRecord;

@@ -266,19 +266,6 @@ pub(crate) fn in_the_machine(causes: &[Cause]) -> impl Iterator<Item = &Cause> {
     causes.iter().filter(|cause| !cause.is_data_fault())
 }
 
-/// A cause that the test record refutes: it was found, and the extended model does not have it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Withdrawn {
-    /// The cause.
-    #[serde(flatten)]
-    pub cause: Cause,
-    /// RMSE on the test data with it over that without it, averaged over the outputs.
-    pub test_rmse_ratio: f64,
-    /// Whether the test data refute it: the extended model would predict them worse than the model handed
-    /// in. Else the part of the records that chooses does.
-    pub by_test: bool,
-}
-
 /// The missing force at one channel: what has to be added there for the model to follow the record,
 /// estimated without a law.
 #[derive(Debug, Clone, PartialEq, Serialize)]

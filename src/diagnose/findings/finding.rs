@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use crate::data::Record;
 use crate::evaluate::Metrics;
-use crate::findings::cause::{Alternative, Cause, MissingForce, Withdrawn, in_the_machine};
+use crate::findings::cause::{Alternative, Cause, MissingForce, in_the_machine};
 use crate::findings::closed_loop::ClosedLoop;
 use crate::findings::distortion::Distortion;
 use crate::findings::error_band::Regime;
@@ -17,6 +17,19 @@ use crate::findings::series::Series;
 use crate::fit::hypothesis::{Moved, Track};
 use crate::system::System;
 use crate::validate::noise_floor::NoiseFloor;
+
+/// A cause that was found and is refuted: the extended model does not have it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Withdrawn {
+    /// The cause.
+    #[serde(flatten)]
+    pub cause: Cause,
+    /// RMSE on the test data with it over that without it, averaged over the outputs.
+    pub test_rmse_ratio: f64,
+    /// Whether the test data refute it: the extended model would predict them worse than the model handed
+    /// in. Else the part of the records that chooses does.
+    pub by_test: bool,
+}
 
 /// What came out.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]

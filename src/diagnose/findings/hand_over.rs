@@ -3,13 +3,14 @@
 use std::collections::BTreeMap;
 
 use crate::data_faults::Fault;
-use crate::findings::cause::{Alternative, Cause, MissingForce, Withdrawn};
+use crate::findings::cause::{Alternative, Cause, MissingForce};
 use crate::findings::closed_loop::ClosedLoop;
 use crate::findings::distortion::Distortion;
 use crate::findings::error_band::Regime;
 use crate::findings::finding::SingleRecord;
 use crate::findings::finding::{
-    FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores, Verdict,
+    FalseDiscovery, Finding, Gain, Left, NotFound, OtherTrack, Ranked, RecordFacts, Scores,
+    Verdict, Withdrawn,
 };
 use crate::findings::note::Note;
 use crate::findings::series::Series;

@@ -2,8 +2,9 @@
 
 use crate::candidates::candidate::Wire;
 use crate::error::DiagnoseError;
-use crate::findings::cause::{Cause, Value, Withdrawn};
+use crate::findings::cause::{Cause, Value};
 use crate::findings::context::Context;
+use crate::findings::finding::Withdrawn;
 use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::problem::Added;

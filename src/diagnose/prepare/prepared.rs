@@ -141,11 +141,11 @@ impl<'a> Prepared<'a> {
             self.problem.flag_spikes(&y);
         }
         found.found.spikes = self.problem.spikes();
-        self.finish_beside(found, nuisance)
+        self.finish_with(found, nuisance)
     }
 
     /// The final fit of the model of an answer, beside what moves.
-    pub fn finish_beside(
+    pub fn finish_with(
         &mut self,
         of: Finished,
         nuisance: Nuisance,

@@ -71,7 +71,7 @@ fn with_nominal(fit: &Fit, parameters: &[(usize, f64)]) -> Fit {
 }
 
 /// What moves where these parameters do not.
-fn beside(study: &Study<'_, '_>, parameters: &[(usize, f64)]) -> Nuisance {
+fn moving(study: &Study<'_, '_>, parameters: &[(usize, f64)]) -> Nuisance {
     let mut nuisance = study.free.clone();
     nuisance.free.retain(|free| !parameters.contains(free));
     nuisance
@@ -83,7 +83,7 @@ fn held(study: &Study<'_, '_>, headline: &Fit, parameters: &[(usize, f64)]) -> O
         return Some(headline.clone());
     }
     let wish = [Wish::from(&with_nominal(headline, parameters))];
-    study.fit_beside(&beside(study, parameters), true, &wish, ITERATIONS.0 + ITERATIONS.1).pop()
+    study.fit_with(&moving(study, parameters), true, &wish, ITERATIONS.0 + ITERATIONS.1).pop()
 }
 
 /// What is left to explain with some parameters at their nominal values, all else being free.
@@ -131,7 +131,7 @@ fn fitted(
     items: &[Item],
 ) -> Vec<Instead> {
     let back = with_nominal(base, without);
-    let nuisance = beside(study, without);
+    let nuisance = moving(study, without);
     let is_free = |key: &Key| !without.iter().any(|(p, _)| *key == Key::Theta(*p));
     let free = ground.tangents.iter().filter(|(key, _)| is_free(key));
     let basis: Vec<Vec<f64>> = free.map(|(_, column)| column.clone()).collect();
@@ -142,10 +142,10 @@ fn fitted(
     let top = evidence(base);
     let wishes: Vec<Wish> =
         models.into_iter().map(|model| Wish { model, noise: noise.clone() }).collect();
-    let first = study.fit_beside(&nuisance, true, &wishes, ITERATIONS.0);
+    let first = study.fit_with(&nuisance, true, &wishes, ITERATIONS.0);
     let near = first.iter().filter(|fit| evidence(fit) > top - RACE);
     let again: Vec<Wish> = near.map(Wish::from).collect();
-    let mut fits = study.fit_beside(&nuisance, true, &again, ITERATIONS.1);
+    let mut fits = study.fit_with(&nuisance, true, &again, ITERATIONS.1);
     fits.retain(|fit| evidence(fit) - top > LOOK_ALIKE.ln());
     fits.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
     let one = |fit: Fit| {

@@ -155,11 +155,11 @@ mod tests {
         assert!(back.held.is_empty());
         assert_eq!(back.moved(), [(0, 1.0)]);
         // what comes back with the first is what the second cannot make up for
-        let mut alone = columns[0].clone();
+        let mut own = columns[0].clone();
         let mut other = vec![];
         add_to_basis(&mut other, columns[1].clone());
-        project(&other, &mut alone);
-        let (left, more) = (dot(&residual, &residual), 0.25 * dot(&alone, &alone));
+        project(&other, &mut own);
+        let (left, more) = (dot(&residual, &residual), 0.25 * dot(&own, &own));
         let products = Products::new(&ground, &free);
         let fall = products.with(&[]) - products.with(&[(0, 1.0)]);
         assert_relative_eq!(fall, 0.5 * N as f64 * (1.0 + more / left).ln(), epsilon = 1e-6);

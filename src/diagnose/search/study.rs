@@ -91,11 +91,11 @@ impl<'a, 'b> Study<'a, 'b> {
     /// Fits, none of them kept yet; none where somebody asks to stop, but to conclude or where nothing is
     /// known.
     pub fn fit(&self, free: bool, wishes: &[Wish], iterations: usize) -> Vec<Fit> {
-        self.fit_beside(self.nuisance(free), free, wishes, iterations)
+        self.fit_with(self.nuisance(free), free, wishes, iterations)
     }
 
     /// The same where something else moves beside causes.
-    pub fn fit_beside(
+    pub fn fit_with(
         &self,
         nuisance: &Nuisance,
         free: bool,
