@@ -7,12 +7,13 @@
 //! mean over outputs of e_extended^2 / e_handed_in^2 <= LEAVES
 //! ```
 //!
-//! the bound that the search has for what it fits. What exceeds it is no hypothesis any more. Of the models
-//! with one law less, or without the move of the parameters, that do not, the most probable one by the records
-//! that were fitted is the answer; where all do, the one that exceeds it least is looked at in the same way
-//! (backward elimination: Miller, "Subset Selection in Regression", 2002). A model that does not forget its start within its records is not
-//! asked: what its simulation leaves is chance there (Forssell and Ljung, IEEE Trans. Automatic Control 45,
-//! 2000).
+//! the bound that the search has for what it fits. A model that exceeds it, and whose errors are less probable
+//! by 20 to 1 as autoregressive noise, is no hypothesis any more: errors that only drift with what disturbs the
+//! plant are larger or smaller by chance. Of the models with one law less, or without the move of the parameters,
+//! that are not refuted, the most probable one by the records that were fitted is the answer; where all are, the
+//! one that exceeds the bound least is looked at in the same way (backward elimination: Miller, "Subset Selection
+//! in Regression", 2002). A model that does not forget its start within its records is not asked: what its
+//! simulation leaves is chance there (Forssell and Ljung, IEEE Trans. Automatic Control 45, 2000).
 
 use std::sync::Arc;
 
@@ -20,6 +21,7 @@ use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::library::library;
 use crate::criteria::LEAVES;
 use crate::error::DiagnoseError;
+use crate::evidence::{NoiseModel, Stretches};
 use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::hypothesis::Track;
@@ -27,7 +29,9 @@ use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Added, Model};
 use crate::fit::refit::{Refit, Stop};
 use crate::innovations;
+use crate::likelihood::refutes;
 use crate::prepare::prepared::Prepared;
+use crate::statistics::rms;
 use crate::validate::test_error::{Scored, TestData, mean_square};
 use crate::watch::Watch;
 
@@ -38,6 +42,13 @@ enum Going {
     Law(usize),
     /// The move of all parameters.
     Parameters,
+}
+
+/// What the test data say of a model.
+struct Judged {
+    /// What it leaves over what the model handed in leaves.
+    ratio: f64,
+    is_refuted: bool,
 }
 
 /// Mean square that one model leaves over that which another leaves, averaged over the outputs; infinite
@@ -56,6 +67,30 @@ fn ratio(of: &Scored, over: &Scored) -> f64 {
     if ratios.is_empty() { 1.0 } else { ratios.iter().sum::<f64>() / ratios.len() as f64 }
 }
 
+/// By how much more probable errors are than others, as a logarithm, each output's in the autoregressive
+/// noise that suits them: a simulation that drifts with what disturbs the plant is no worse for it.
+fn gain(of: &Scored, over: &Scored) -> f64 {
+    let one = |(of, over): (&Vec<f64>, &Vec<f64>)| {
+        let both: Vec<(f64, f64)> = of.iter().copied().zip(over.iter().copied()).collect();
+        let runs = both.chunk_by(|a, b| is_known(a) == is_known(b)).filter(|run| is_known(&run[0]));
+        let lengths: Vec<usize> = runs.map(<[_]>::len).collect();
+        let known = || both.iter().filter(|pair| is_known(pair));
+        let unit = rms(&known().map(|pair| pair.1).collect::<Vec<f64>>());
+        if !(unit > 0.0) {
+            return 0.0;
+        }
+        let noise = Stretches::of_lengths(&lengths);
+        let density = |r: Vec<f64>| noise.estimate(&r).log_likelihood;
+        density(known().map(|pair| pair.0 / unit).collect())
+            - density(known().map(|pair| pair.1 / unit).collect())
+    };
+    of.errors.iter().zip(&over.errors).map(one).sum()
+}
+
+fn is_known(pair: &(f64, f64)) -> bool {
+    pair.0.is_finite() && pair.1.is_finite()
+}
+
 /// An answer without what the test data refute.
 ///
 /// # Errors
@@ -69,37 +104,42 @@ pub(crate) fn guarded(
 ) -> Result<Finished, DiagnoseError> {
     let before = test.score(prepared.problem.system)?;
     loop {
-        let leaves = |model: &Model| -> Result<f64, DiagnoseError> {
-            Ok(ratio(&test.score(&extended(&prepared.problem, model)?)?, &before))
+        let judged = |model: &Model| -> Result<Judged, DiagnoseError> {
+            let after = test.score(&extended(&prepared.problem, model)?)?;
+            let ratio = ratio(&after, &before);
+            let is_refuted = ratio > LEAVES && refutes(gain(&after, &before), f64::INFINITY);
+            Ok(Judged { ratio, is_refuted })
         };
         let known = answer.fitted.model.known();
         let laws = (known..answer.causes()).map(Going::Law);
         let moved = answer.has_moved().then_some(Going::Parameters);
         let may_go: Vec<Going> = laws.chain(moved).collect();
-        if may_go.is_empty()
-            || leaves(&answer.fitted.model)? <= LEAVES
-            || !innovations::forgets(prepared)
-        {
+        if may_go.is_empty() {
+            return Ok(answer);
+        }
+        let with = judged(&answer.fitted.model)?;
+        if !with.is_refuted || !innovations::forgets(prepared) {
             return Ok(answer);
         }
         watch.report(0.97, "taking back what the test data refute");
         let mut best: Option<((f64, f64), Going, Model)> = None;
         for going in may_go {
             let Some(model) = without(prepared, &answer, going, watch) else { continue };
-            let left = leaves(&model)?;
-            let worth = match left <= LEAVES {
-                true => {
+            let Judged { ratio, is_refuted } = judged(&model)?;
+            let worth = match is_refuted {
+                true => f64::NEG_INFINITY,
+                false => {
                     innovations::criterion_of(prepared, &model, numbers(&answer, &model, going))
                 }
-                false => f64::NEG_INFINITY,
             };
-            let order = (worth, -left);
+            let order = (worth, -ratio);
             if best.as_ref().is_none_or(|(most, ..)| order > *most) {
                 best = Some((order, going, model));
             }
         }
-        let Some((_, going, model)) = best else { return Ok(answer) };
-        answer = less(prepared, answer, going, model)?;
+        let Some(((_, without), going, model)) = best else { return Ok(answer) };
+        let times = (with.ratio / -without).sqrt();
+        answer = less(prepared, answer, (going, times), model)?;
     }
 }
 
@@ -135,24 +175,25 @@ fn without(
     }
 }
 
-/// The answer without it, finished again.
+/// The answer without what goes, finished again; with it, test errors were so many times as large.
 fn less(
     prepared: &mut Prepared<'_>,
     mut answer: Finished,
-    going: Going,
+    (going, times): (Going, f64),
     model: Model,
 ) -> Result<Finished, DiagnoseError> {
     let mut nuisance = answer.nuisance.clone();
     match going {
         Going::Law(i) => {
-            answer.found.refuted.push(answer.fitted.model.added[i].clone());
+            answer.found.refuted.push((answer.fitted.model.added[i].clone(), times));
             answer.found.slots.remove(i);
             if answer.is_by_innovations() {
                 return innovations::without(prepared, answer, i);
             }
         }
         Going::Parameters => {
-            answer.found.refuted.extend(moved(prepared, &answer));
+            let moved = moved(prepared, &answer);
+            answer.found.refuted.extend(moved.into_iter().map(|added| (added, times)));
             answer.track = Track::ParametersTrusted;
             nuisance = Nuisance::new(&prepared.problem, &prepared.nominal);
         }

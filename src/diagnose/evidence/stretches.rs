@@ -48,9 +48,8 @@ impl Stretches {
     }
 }
 
-#[cfg(test)]
 impl Stretches {
-    /// One output with stretches of these lengths.
+    /// One output with stretches of these lengths, one after the other.
     pub fn of_lengths(lengths: &[usize]) -> Self {
         let mut spans = vec![];
         let mut at = 0;

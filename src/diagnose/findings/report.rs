@@ -71,9 +71,13 @@ impl Context<'_, '_> {
         let withdrawn = self.withdrawn(chosen, test, &after)?;
         let gain = gain(&before, &after, &floors);
         let curves_only = causes.iter().all(|c| c.is_data_fault() || c.wording.shape.is_some());
+        let is_refuted = !chosen.found.refuted.is_empty();
         let verdict = match (structural, causes.len()) {
             (1.., _) if curves_only && gain.error_removed < EXPLAINED => Verdict::Unexplained,
             (1.., _) if gain.interval95[1] < MOST => Verdict::Unexplained,
+            // what the search held for the explanation is refuted, and what is left of it is not most
+            (1.., _) if is_refuted && gain.interval95[0] < MOST => Verdict::Unexplained,
+            (0, 0) if is_refuted => Verdict::Unexplained,
             (0, 0) if chosen.dependence > DEPENDS => Verdict::Unexplained,
             (0, 0) => Verdict::NothingFound,
             (0, _) => Verdict::DataFault,

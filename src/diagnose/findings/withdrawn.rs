@@ -19,18 +19,20 @@ impl Context<'_, '_> {
         test: &TestData,
         after: &Scored,
     ) -> Result<Vec<Withdrawn>, DiagnoseError> {
-        let one = |added: &Added, by_test: bool| {
+        let by_search = |added: &Added| {
             let Added { cause, parameters } = added;
             let with = test.score(&extended(
                 self.problem,
                 &chosen.fitted.model.with(cause, parameters.clone()),
             )?)?;
             let test_rmse_ratio = ratio(&with, after);
-            Ok(Withdrawn { cause: self.as_cause(added), test_rmse_ratio, by_test })
+            Ok(Withdrawn { cause: self.as_cause(added), test_rmse_ratio, by_test: false })
         };
-        let found = &chosen.found;
-        let by_search = found.withdrawn.iter().map(|added| one(added, false));
-        by_search.chain(found.refuted.iter().map(|added| one(added, true))).collect()
+        let by_test = |(added, times): &(Added, f64)| {
+            Ok(Withdrawn { cause: self.as_cause(added), test_rmse_ratio: *times, by_test: true })
+        };
+        let (withdrawn, refuted) = (&chosen.found.withdrawn, &chosen.found.refuted);
+        withdrawn.iter().map(by_search).chain(refuted.iter().map(by_test)).collect()
     }
 
     /// A cause with the numbers of the search, of which nothing more was asked.

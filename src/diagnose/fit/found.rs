@@ -115,6 +115,7 @@ pub(crate) struct Found {
     pub off: Off,
     /// Causes that were taken back: samples that were not fitted are more probable without them.
     pub withdrawn: Vec<Added>,
-    /// Causes that were taken back because the test data are predicted worse with them.
-    pub refuted: Vec<Added>,
+    /// Causes that were taken back because the test data are predicted worse with them, each with the RMSE
+    /// on the test data with it over that without it.
+    pub refuted: Vec<(Added, f64)>,
 }

@@ -199,10 +199,13 @@ pub fn withdrawn(withdrawn: &Withdrawn) -> String {
     let ratio = withdrawn.test_rmse_ratio;
     let (place, ratio_said) = (super::place_of(&withdrawn.cause), number(ratio, None));
     if withdrawn.by_test {
+        let how = match ratio.is_finite() {
+            true => format!("RMSE times {ratio_said} with it"),
+            false => "with it the simulation leaves all bounds".into(),
+        };
         return format!(
-            "Withdrawn: {place}. The test data refute it: with it they are predicted worse than by the \
-             model that was handed in (RMSE times {ratio_said} with it); the extended model does not have \
-             it."
+            "Withdrawn: {place}. The test data refute it: the extended model with it predicts them worse \
+             than the model that was handed in ({how}), and does not have it."
         );
     }
     let test = if ratio > 1.0 { "and so do the test data" } else { "though the test data do not" };
