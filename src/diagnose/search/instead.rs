@@ -39,6 +39,30 @@ const ITERATIONS: (usize, usize) = (3, 6);
 
 /// The laws in the place of each parameter that a headline moved, the most likely first.
 pub(super) fn instead_of_parameters(study: &mut Study<'_, '_>, headline: &Fit) -> Vec<Instead> {
+    let known = study.exchanged.take().filter(|(of, _)| *of == headline.key());
+    let found = known.map_or_else(|| exchanges(study, headline), |(_, found)| found);
+    let one = |(parameter, fit): (usize, Fit)| {
+        let probability = study.beam.probability_of_another(fit.posterior());
+        let cause = fit.model.added.last()?.cause.clone();
+        Some(Instead { parameter, cause, probability })
+    };
+    found.into_iter().filter_map(one).collect()
+}
+
+/// Whether a law in the place of a parameter that the best model moved leads to a better one: the exchange is a
+/// neighbour of that model, and has to be looked at before it is believed.
+pub(super) fn better_than_moved(study: &mut Study<'_, '_>) -> bool {
+    let Some(best) = study.beam.best().cloned() else { return false };
+    let found = exchanges(study, &best);
+    let better = found.iter().filter(|(_, fit)| fit.posterior() > best.posterior());
+    let wishes: Vec<Wish> = better.map(|(_, fit)| Wish::from(fit)).collect();
+    study.exchanged = Some((best.key(), found));
+    study.fit_and_keep(true, &wishes, ITERATIONS.1);
+    study.beam.best().is_some_and(|now| now.key() != best.key())
+}
+
+/// Fits of a law in the place of each parameter that a model moved, those that are as likely.
+fn exchanges(study: &mut Study<'_, '_>, headline: &Fit) -> Vec<(usize, Fit)> {
     if !headline.free || study.watch.stopped() || study.most <= headline.causes() {
         return vec![];
     }
@@ -57,7 +81,8 @@ pub(super) fn instead_of_parameters(study: &mut Study<'_, '_>, headline: &Fit) -
         let without: Vec<_> = back.held.iter().copied().chain([parameter]).collect();
         let answers = metric.answer(&items, &question(&ground, &without), (LOOKED_AT, 0));
         let moves = moves(study, headline, &items, answers.single, stay);
-        found.extend(fitted(study, (&ground, &base), &without, &moves, &items));
+        let own = fitted(study, (&ground, &base), &without, &moves, &items).into_iter();
+        found.extend(own.map(|fit| (parameter.0, fit)));
     }
     study.items = items;
     found
@@ -129,7 +154,7 @@ fn fitted(
     without: &[(usize, f64)],
     moves: &[Move],
     items: &[Item],
-) -> Vec<Instead> {
+) -> Vec<Fit> {
     let back = with_nominal(base, without);
     let nuisance = moving(study, without);
     let is_free = |key: &Key| !without.iter().any(|(p, _)| *key == Key::Theta(*p));
@@ -148,10 +173,5 @@ fn fitted(
     let mut fits = study.fit_with(&nuisance, true, &again, ITERATIONS.1);
     fits.retain(|fit| evidence(fit) - top > LOOK_ALIKE.ln());
     fits.sort_by(|a, b| evidence(b).total_cmp(&evidence(a)));
-    let one = |fit: Fit| {
-        let probability = study.beam.probability_of_another(fit.posterior());
-        let cause = fit.model.added.last()?.cause.clone();
-        Some(Instead { parameter: without.last()?.0, cause, probability })
-    };
-    fits.into_iter().filter_map(one).collect()
+    fits
 }

@@ -5,12 +5,11 @@ use std::sync::Arc;
 
 use super::beam::{Fit, SetKey};
 use super::chain::{ROUNDS, chain};
-use super::contribution::tangents;
 use super::fits::Wish;
-use super::instead::instead_of_parameters;
+use super::instead::{better_than_moved, instead_of_parameters};
 use super::laws::{Asked, laws_of_places};
 use super::nameless::nameless;
-use super::selected::{ranking, slots};
+use super::selected::{screened, slots};
 use super::study::Study;
 use super::veto::vetoed;
 use crate::candidates::candidate::Wire;
@@ -23,7 +22,6 @@ use crate::fit::problem::{Added, Grain, Model, Part, Problem};
 use crate::prepare::input_dependence::DEPENDS;
 use crate::prepare::known_clipping::limited;
 use crate::prepare::operating_range::Nominal;
-use crate::statistics::add_to_basis;
 use crate::watch::Watch;
 
 /// Iterations of the model without causes, and of a model with parameters the other way.
@@ -85,6 +83,10 @@ pub(crate) fn search(
     }
     watch.report(0.95, "checking what was named");
     study.settle(SETTLED.0, SETTLED.1);
+    while better_than_moved(&mut study) {
+        searched(&mut study, true, 1);
+        study.settle(SETTLED.0, SETTLED.1);
+    }
     concluded(study, screen)
 }
 
@@ -246,16 +248,6 @@ fn toggle(study: &mut Study<'_, '_>) {
         study.fit_and_keep(free, wishes, ITERATIONS);
     }
     study.polish(POLISHED);
-}
-
-/// The ranking of the dictionary against the model without causes.
-fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
-    let nuisance = study.nuisance(first.free);
-    let mut basis = vec![];
-    for (_, column) in tangents(study.problem, nuisance, &first.model, &first.residual) {
-        add_to_basis(&mut basis, column);
-    }
-    (!study.items.is_empty()).then(|| ranking(study.problem, &study.items, &first.residual, &basis))
 }
 
 /// The headline after the veto, with its look-alikes.

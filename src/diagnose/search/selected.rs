@@ -3,13 +3,15 @@
 use std::sync::Arc;
 
 use super::beam::{Beam, Fit, SetKey, name};
+use super::contribution::tangents;
 use super::dictionary::Item;
+use super::study::Study;
 use crate::candidates::candidate::Candidate;
 use crate::candidates::screen::{Scored, Screen};
 use crate::criteria::LOOK_ALIKE;
 use crate::fit::found::{Belief, OtherLaws, SET, Slot};
 use crate::fit::problem::{Added, Grain, Part, Problem};
-use crate::statistics::{dot, project, wald};
+use crate::statistics::{add_to_basis, dot, project, wald};
 
 /// Candidates that are listed.
 const LISTED: usize = 200;
@@ -153,13 +155,18 @@ fn first_order<'a>(item: &'a Item, left: &[f64], basis: &[Vec<f64>]) -> Option<F
     })
 }
 
+/// The ranking of the dictionary against the model without causes.
+pub(super) fn screened(study: &Study<'_, '_>, first: &Fit) -> Option<Screen> {
+    let nuisance = study.nuisance(first.free);
+    let mut basis = vec![];
+    for (_, column) in tangents(study.problem, nuisance, &first.model, &first.residual) {
+        add_to_basis(&mut basis, column);
+    }
+    (!study.items.is_empty()).then(|| ranking(study.problem, &study.items, &first.residual, &basis))
+}
+
 /// The ranking of candidates before any fit, each by the grid point of it that explains most.
-pub(super) fn ranking(
-    problem: &Problem<'_>,
-    items: &[Item],
-    residual: &[f64],
-    basis: &[Vec<f64>],
-) -> Screen {
+fn ranking(problem: &Problem<'_>, items: &[Item], residual: &[f64], basis: &[Vec<f64>]) -> Screen {
     let mut left = residual.to_vec();
     project(basis, &mut left);
     let mut best: Vec<(f64, &Item)> = vec![];

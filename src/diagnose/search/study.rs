@@ -49,6 +49,8 @@ pub(super) struct Study<'a, 'b> {
     /// Sets that were fitted from a move, and those that were fitted as neighbours.
     pub tried: BTreeSet<SetKey>,
     pub settled: BTreeSet<SetKey>,
+    /// Laws in the place of parameters of a set, the last that was asked: parameter and fit.
+    pub exchanged: Option<(SetKey, Vec<(usize, Fit)>)>,
 }
 
 impl<'a, 'b> Study<'a, 'b> {
@@ -80,6 +82,7 @@ impl<'a, 'b> Study<'a, 'b> {
             concludes: false,
             tried: BTreeSet::new(),
             settled: BTreeSet::new(),
+            exchanged: None,
         }
     }
 
