@@ -104,6 +104,13 @@ fn rivals(page: &mut Page, cause: &Cause) {
         header.push("probability");
     }
     page.table(&header, &rows);
+    if let Some(why) = sentences::why_less_sure(cause) {
+        page.element(
+            "p",
+            "note",
+            &format!("What looks alike explains the data as well; it is {why}."),
+        );
+    }
     if let Some(place) = cause.place_probability {
         let sentence = format!(
             "Probability of this place, whatever the law: {:.1} %. How often such probabilities were right \

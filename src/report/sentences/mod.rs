@@ -25,7 +25,10 @@ pub use self::{
     notes::notes,
     plan::{experiment, look_alikes as pair, outlook, visibility},
     rest::details,
-    rest::{all_left, fit, gain, held, look_alikes, record, rmse, shares, unweighed, withdrawn},
+    rest::{
+        all_left, fit, gain, held, look_alikes, record, rmse, shares, unweighed, why_less_sure,
+        withdrawn,
+    },
     size::formula,
 };
 

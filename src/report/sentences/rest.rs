@@ -37,13 +37,18 @@ pub fn look_alikes(finding: &Finding, cause: &Cause) -> Option<String> {
     }
     let others = cause.indistinguishable.iter().map(|other| alternative(&finding.held, other));
     let others: Vec<String> = others.collect();
-    let are_rare = cause.indistinguishable.iter().all(|a| a.probability.is_some_and(|p| p < RARE));
-    let why = match cause.is_parameter() && are_rare {
-        true => "; less sure only because a value that is a little wrong is more usual than a law",
-        false => "",
-    };
+    let why = why_less_sure(cause).map_or_else(String::new, |why| format!("; {why}"));
     let (own, others) = (super::place_of(cause), others.join("; "));
     Some(format!("  the data cannot tell {own} from: {others}{why}"))
+}
+
+/// Why what looks like a parameter that moved is not as sure, where it is not.
+pub fn why_less_sure(cause: &Cause) -> Option<&'static str> {
+    let is_rare = |a: &Alternative| a.probability.is_some_and(|p| p < RARE);
+    let alike = &cause.indistinguishable;
+    let are_rare = cause.is_parameter() && !alike.is_empty() && alike.iter().all(is_rare);
+    are_rare
+        .then_some("less sure only because a value that is a little wrong is more usual than a law")
 }
 
 pub(super) fn alternative(held: &[String], other: &Alternative) -> String {
