@@ -257,3 +257,31 @@ pub fn nothing(finding: &Finding) -> String {
     }
     text
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::{Site, Wording};
+
+    #[test]
+    fn what_is_as_likely_as_a_parameter_and_less_usual_says_why() {
+        let wording = Wording { site: Site::Parameter, ..Wording::default() };
+        let mut moved = Cause { into: "m".into(), wording, ..Cause::default() };
+        let gain = |probability| Alternative {
+            effect: "gain".into(),
+            into: "y".into(),
+            of: Some("y".into()),
+            title: "A wrong scale".into(),
+            site: Site::Output,
+            error_removed: 0.5,
+            probability: Some(probability),
+            unweighed: None,
+        };
+        assert!(why_less_sure(&moved).is_none());
+        moved.indistinguishable = vec![gain(0.002)];
+        let why = why_less_sure(&moved).unwrap();
+        assert!(why.ends_with("a value that is a little wrong is more usual than a law"), "{why}");
+        moved.indistinguishable.push(gain(0.3));
+        assert!(why_less_sure(&moved).is_none());
+    }
+}

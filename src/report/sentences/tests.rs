@@ -297,25 +297,3 @@ fn look_alikes_by_title_and_place() {
     assert_eq!(other("A drift", Site::Drift, "m", Some("time")), "a drift of m");
     assert_eq!(other("", Site::Parameter, "m", None), "another value of m");
 }
-
-#[test]
-fn what_is_as_likely_as_a_parameter_and_less_usual_says_why() {
-    let values = vec![value("value", 1.2, 0.02, "kg")];
-    let mut moved = law("Another value", "m", None, Site::Parameter, values);
-    let gain = |probability| Alternative {
-        effect: "gain".into(),
-        into: "y".into(),
-        of: Some("y".into()),
-        title: "A wrong scale".into(),
-        site: Site::Output,
-        error_removed: 0.5,
-        probability: Some(probability),
-        unweighed: None,
-    };
-    assert!(why_less_sure(&moved).is_none());
-    moved.indistinguishable = vec![gain(0.002)];
-    let why = why_less_sure(&moved).unwrap();
-    assert!(why.ends_with("a value that is a little wrong is more usual than a law"), "{why}");
-    moved.indistinguishable.push(gain(0.3));
-    assert!(why_less_sure(&moved).is_none());
-}
