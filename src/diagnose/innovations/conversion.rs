@@ -291,3 +291,7 @@ fn slot(own: &Arc<Candidate>, cause: &NamedCause, alike: &[(Arc<Candidate>, f64)
     let belief = Belief { law, place, odds: Some(cause.log_odds), members, others: vec![] };
     Slot { set, others: vec![], laws: vec![], score: 0.0, belief: Some(belief) }
 }
+
+#[cfg(test)]
+#[path = "conversion_tests.rs"]
+mod tests;
