@@ -2,37 +2,12 @@
 
 use super::*;
 use crate::Diagnosis;
-use crate::data::{Random, Record};
-use crate::evaluate::{Init, Simulation};
+use crate::data::Record;
+use crate::search::fixture::{self, Run, mass};
 use crate::system::System;
-use lacuna_core::file::{Format, parse};
-
-const MODEL: &str = r#"
-sampling_time = 0.05
-[model.equations]
-inputs = [{ name = "u" }]
-states = [{ name = "x", derivative = "v" }, { name = "v", derivative = "u - k*x - 0.8*v" }]
-outputs = [{ name = "y", value = "x" }]
-parameters = [{ name = "k", value = 4.0, fixed = true }]
-channels = [{ name = "f", into = [{ state = "v", gain = "1" }] }]
-"#;
-
-fn system(effects: &str) -> System {
-    let text = format!("{MODEL}{effects}");
-    parse(&text, "mass.toml", Format::Toml).unwrap_or_else(|e| panic!("{}", e.pretty()))
-}
 
 fn record(machine: &System, seed: u64, size: f64) -> Record {
-    let mut random = Random::new(seed);
-    let mut u = vec![0.0; 1200];
-    for k in 1..u.len() {
-        u[k] = 0.9 * u[k - 1] + size * random.normal();
-    }
-    let driven = Record::new(0.05).input("u", u).unwrap();
-    let run = Simulation::of(machine, &driven, Init::Samples(0)).unwrap();
-    let y = run.outputs.into_iter().next().unwrap().1;
-    let y: Vec<f64> = y.into_iter().map(|y| y + 0.02 * random.normal()).collect();
-    driven.output("y", y).unwrap()
+    fixture::record(machine, &Run { samples: 1200, seed, size, noise: 0.02 })
 }
 
 const HARD: &str = "[[effects]]\ninto = \"f\"\nof = \"x\"\neffect.cubic = { coefficient = -2.0 }\n";
@@ -42,12 +17,12 @@ const SOFT: &str = "[[effects]]\ninto = \"f\"\nof = \"x\"\neffect.cubic = { coef
 #[test]
 fn a_cause_that_the_test_record_refutes_is_withdrawn_and_the_model_does_not_have_it() {
     let only = ["cubic", "drag", "bias"].map(String::from);
-    let baseline = system("");
+    let baseline = mass("");
     let diagnosis = Diagnosis::of(&baseline).only(&only);
-    let records = [record(&system(HARD), 1, 1.0)];
-    let named = diagnosis.run(&records, Some(&record(&system(HARD), 2, 1.0)), &()).unwrap();
+    let records = [record(&mass(HARD), 1, 1.0)];
+    let named = diagnosis.run(&records, Some(&record(&mass(HARD), 2, 1.0)), &()).unwrap();
     assert_eq!((named.causes.len(), named.withdrawn.len()), (1, 0), "{named}");
-    let finding = diagnosis.run(&records, Some(&record(&system(SOFT), 2, 0.5)), &()).unwrap();
+    let finding = diagnosis.run(&records, Some(&record(&mass(SOFT), 2, 0.5)), &()).unwrap();
     assert!(finding.causes.is_empty(), "{finding}");
     let withdrawn = &finding.withdrawn[0];
     assert_eq!((&withdrawn.cause.effect[..], withdrawn.by_test), ("cubic", true));

@@ -1,15 +1,62 @@
-//! Candidates and fits to test with.
+//! Machines, records, candidates and fits to test with.
 
 use std::sync::Arc;
 
 use super::beam::Fit;
 use crate::candidates::candidate::{Candidate, Preference, Wire};
 use crate::candidates::stiffness::Stiffness;
+use crate::data::{Random, Record};
 use crate::effect::Named;
+use crate::evaluate::{Init, Simulation};
 use crate::evidence::{NoiseModel, Stretches};
 use crate::fit::problem::Model;
 use crate::register;
-use crate::system::Route;
+use crate::system::{Route, System};
+use lacuna_core::file::{Format, parse};
+
+/// A mass on a spring, driven and seen.
+const MASS: &str = r#"
+sampling_time = 0.05
+[model.equations]
+inputs = [{ name = "u" }]
+states = [{ name = "x", derivative = "v" }, { name = "v", derivative = "u - k*x - 0.8*v" }]
+outputs = [{ name = "y", value = "x" }]
+parameters = [{ name = "k", value = 4.0, fixed = true }]
+channels = [{ name = "f", into = [{ state = "v", gain = "1" }] }]
+"#;
+
+/// A model file.
+pub(crate) fn system(text: &str) -> System {
+    parse(text, "mass.toml", Format::Toml).unwrap_or_else(|e| panic!("{}", e.pretty()))
+}
+
+/// The mass on a spring with effects, as a model file says them.
+pub(crate) fn mass(effects: &str) -> System {
+    system(&format!("{MASS}{effects}"))
+}
+
+/// How a machine of one input `u` and one output `y` is driven and read.
+pub(crate) struct Run {
+    pub samples: usize,
+    pub seed: u64,
+    /// Standard deviation of what drives u, and of the noise of y.
+    pub size: f64,
+    pub noise: f64,
+}
+
+/// A record of a machine with white noise.
+pub(crate) fn record(machine: &System, run: &Run) -> Record {
+    let mut random = Random::new(run.seed);
+    let mut u = vec![0.0; run.samples];
+    for k in 1..u.len() {
+        u[k] = 0.9 * u[k - 1] + run.size * random.normal();
+    }
+    let driven = Record::new(0.05).input("u", u).unwrap();
+    let clean = Simulation::of(machine, &driven, Init::Samples(0)).unwrap();
+    let y = clean.outputs.into_iter().next().unwrap().1;
+    let y: Vec<f64> = y.into_iter().map(|y| y + run.noise * random.normal()).collect();
+    driven.output("y", y).unwrap()
+}
 
 /// A cubic law into a channel, of a coordinate.
 pub(crate) fn candidate(into: &str) -> Candidate {

@@ -20,6 +20,7 @@ use std::collections::BTreeSet;
 use super::beam::{Fit, name};
 use super::begin::begun;
 use super::chain::{Ground, refresh};
+use super::contribution::tangents;
 use super::dictionary::Item;
 use super::fits::Wish;
 use super::metric::{Answer, Metric, Question};
@@ -66,7 +67,8 @@ fn exchanges(study: &mut Study<'_, '_>, headline: &Fit) -> Vec<(usize, Fit)> {
     if !headline.free || study.watch.stopped() || study.most <= headline.causes() {
         return vec![];
     }
-    let ground = Ground::new(study, headline.clone());
+    let tangents = tangents(study.problem, &study.free, &headline.model, &headline.residual);
+    let ground = Ground::of(headline.clone(), tangents);
     let back = PutBack::new(&ground, &study.free.free);
     let moved = back.moved();
     let Some(base) = held(study, headline, &back.held).filter(|_| !moved.is_empty()) else {
@@ -75,7 +77,7 @@ fn exchanges(study: &mut Study<'_, '_>, headline: &Fit) -> Vec<(usize, Fit)> {
     let mut items = std::mem::take(&mut study.items);
     refresh(study, &ground, &mut items, BTreeSet::new(), true);
     let metric = Metric::new(&items, |column| headline.noise.whiten(column));
-    let stay = metric.answer(&items, &question(&ground, &back.held), (0, 0)).stay;
+    let stay = back.likelihood();
     let mut found = vec![];
     for parameter in moved {
         let without: Vec<_> = back.held.iter().copied().chain([parameter]).collect();

@@ -98,6 +98,11 @@ impl PutBack {
         back
     }
 
+    /// Log likelihood with what is put back, but for a constant.
+    pub fn likelihood(&self) -> f64 {
+        self.products.with(&self.held)
+    }
+
     /// Log likelihood with one more parameter at its nominal value.
     fn without(&self, other: (usize, f64)) -> f64 {
         let held: Vec<_> = self.held.iter().copied().chain([other]).collect();
@@ -112,7 +117,7 @@ impl PutBack {
 
     /// The parameters that need to move, beside those that are put back.
     pub fn moved(&self) -> Vec<(usize, f64)> {
-        let value = self.products.with(&self.held);
+        let value = self.likelihood();
         let is_needed =
             |&&other: &&(usize, f64)| 2.0 * (value - self.without(other)) > MOVED.powi(2);
         self.others.iter().filter(is_needed).copied().collect()

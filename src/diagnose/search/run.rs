@@ -16,7 +16,7 @@ use crate::candidates::candidate::Wire;
 use crate::candidates::library::Allowed;
 use crate::candidates::screen::Screen;
 use crate::evidence::{NoiseModel, price};
-use crate::fit::found::{Found, Off};
+use crate::fit::found::{Found, Instead, Off};
 use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Added, Grain, Model, Part, Problem};
 use crate::prepare::input_dependence::DEPENDS;
@@ -265,7 +265,7 @@ fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched
         spikes: study.problem.spikes(),
         full: headline.causes() >= study.most && study.most > 0,
         nothing,
-        off: Off { instead, ..off(&study) },
+        off: off(&study, instead),
         withdrawn,
         refuted: vec![],
     };
@@ -274,7 +274,7 @@ fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched
 }
 
 /// How probable it is that parameters are off: all of them, or one alone.
-fn off(study: &Study<'_, '_>) -> Off {
+fn off(study: &Study<'_, '_>, instead: Vec<Instead>) -> Off {
     let has = |fit: &Fit, p: usize| {
         let is_it = |added: &Added| matches!(added.cause.wire, Wire::Parameter(q) if q == p);
         !fit.free && fit.model.added.iter().any(is_it)
@@ -283,7 +283,7 @@ fn off(study: &Study<'_, '_>) -> Off {
     Off {
         all: study.beam.probability(|fit| fit.free),
         single: parameters.map(|p| study.beam.probability(|fit| has(fit, p))).collect(),
-        instead: vec![],
+        instead,
     }
 }
 

@@ -1,46 +1,21 @@
 //! The search from end to end on a small machine.
 
 use crate::Diagnosis;
-use crate::data::{Random, Record};
-use crate::evaluate::{Init, Simulation};
+use crate::data::Record;
 use crate::findings::finding::{Finding, Verdict};
 use crate::findings::note::Note;
 use crate::memory::Memory;
+use crate::search::fixture::{self, Run, mass, system};
 use crate::system::System;
-use lacuna_core::file::{Format, parse};
-
-const MODEL: &str = r#"
-sampling_time = 0.05
-[model.equations]
-inputs = [{ name = "u" }]
-states = [{ name = "x", derivative = "v" }, { name = "v", derivative = "u - k*x - 0.8*v" }]
-outputs = [{ name = "y", value = "x" }]
-parameters = [{ name = "k", value = 4.0, fixed = true }]
-channels = [{ name = "f", into = [{ state = "v", gain = "1" }] }]
-"#;
-
-fn system(effects: &str) -> System {
-    let text = format!("{MODEL}{effects}");
-    parse(&text, "mass.toml", Format::Toml).unwrap_or_else(|e| panic!("{}", e.pretty()))
-}
 
 /// A record of a machine with white noise.
 fn record(machine: &System, noise: f64) -> Record {
-    let mut random = Random::new(11);
-    let mut u = vec![0.0; 1500];
-    for k in 1..u.len() {
-        u[k] = 0.9 * u[k - 1] + random.normal();
-    }
-    let driven = Record::new(0.05).input("u", u).unwrap();
-    let run = Simulation::of(machine, &driven, Init::Samples(0)).unwrap();
-    let y = run.outputs.into_iter().next().unwrap().1;
-    let y: Vec<f64> = y.into_iter().map(|y| y + noise * random.normal()).collect();
-    driven.output("y", y).unwrap()
+    fixture::record(machine, &Run { samples: 1500, seed: 11, size: 1.0, noise })
 }
 
 fn found(record: &Record, threads: usize) -> Finding {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    let system = system("");
+    let system = mass("");
     let only = ["cubic", "drag", "bias"].map(String::from);
     let diagnosis = Diagnosis::of(&system).only(&only);
     pool.install(|| diagnosis.run(std::slice::from_ref(record), None, &()).unwrap())
@@ -49,7 +24,7 @@ fn found(record: &Record, threads: usize) -> Finding {
 #[test]
 fn a_hidden_law_is_named_with_its_probability_whatever_the_number_of_threads() {
     let hidden = "[[effects]]\ninto = \"f\"\nof = \"x\"\neffect.cubic = { coefficient = -2.0 }\n";
-    let record = record(&system(hidden), 0.02);
+    let record = record(&mass(hidden), 0.02);
     let one = found(&record, 1);
     assert_eq!(one.verdict, Verdict::CausesFound);
     assert_eq!(one.causes.len(), 1);
@@ -69,8 +44,8 @@ fn a_hidden_law_is_named_with_its_probability_whatever_the_number_of_threads() {
 #[test]
 fn what_memory_does_not_hold_is_left_out_by_rule_and_said() {
     let hidden = "[[effects]]\ninto = \"f\"\nof = \"x\"\neffect.cubic = { coefficient = -2.0 }\n";
-    let record = record(&system(hidden), 0.02);
-    let system = system("");
+    let record = record(&mass(hidden), 0.02);
+    let system = mass("");
     let only = ["cubic", "drag", "bias", "linear", "saturation", "dead_zone", "hysteresis", "stop"];
     let within = |memory: Memory| {
         let diagnosis = Diagnosis::of(&system).only(&only.map(String::from)).memory(memory);
@@ -96,7 +71,7 @@ fn what_memory_does_not_hold_is_left_out_by_rule_and_said() {
 
 #[test]
 fn nothing_is_named_where_nothing_is_hidden() {
-    let finding = found(&record(&system(""), 0.02), 2);
+    let finding = found(&record(&mass(""), 0.02), 2);
     assert_eq!(finding.verdict, Verdict::NothingFound);
     assert!(finding.causes.is_empty() && finding.withdrawn.is_empty());
     assert!(finding.verdict_probability.unwrap() > 0.5);
@@ -116,9 +91,6 @@ outputs = [{{ name = "y", value = "x" }}]
 parameters = [{{ name = "m", value = 1.0 }}, {{ name = "c", value = 0.8 }}, {{ name = "k", value = 4.0 }}]
 {effects}"#
         )
-    };
-    let system = |text: &str| -> System {
-        parse(text, "mass.toml", Format::Toml).unwrap_or_else(|e| panic!("{}", e.pretty()))
     };
     let hidden = "[[effects]]\ninto = \"y\"\nof = \"y\"\neffect.gain = { gain = 0.2 }\n";
     // beside it all parameters are off, so that they are asked to move
