@@ -1,24 +1,25 @@
-//! Autoregressive noise of each output as a whitening filter: the deviations of the samples first, then
+//! The noise of each output as a whitening filter: the deviations of the samples first, then
 //! the predictor, then the weights of the samples.
 //!
-//! W r = w[t] (u[t] - a_1 u[t-1] - ... - a_p u[t-p]) / s, u[t] = r[t] / sqrt(v[t]): `super::noise`,
-//! `super::variance` and `super::tails` have the parts and their sources.
+//! W r = w[t] (u[t] - a_1 u[t-1] - ... - a_p u[t-p]) / s, u[t] = r[t] / sqrt(v[t]), or what the predictor of a
+//! sensor that wanders leaves of it: `super::output_noise`, `super::variance` and `super::tails` have the
+//! parts and their sources.
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::noise::Autoregressive;
+use super::output_noise::OutputNoise;
 use super::stretches::Stretches;
 use super::tails::Tails;
 use super::variance::VarianceFunction;
 use super::whitener::{Estimated, Whitener};
 
-/// Autoregressive noise of every output, of normal or of t innovations and of one variance or one
+/// Noise of every output, of normal or of t innovations and of one variance or one
 /// that follows the signal or time.
 #[derive(Debug, Clone)]
 pub(crate) struct Coloured {
     pub(super) stretches: Stretches,
-    pub(super) noise: Vec<Autoregressive>,
+    pub(super) noise: Vec<OutputNoise>,
     pub(super) tails: Vec<Option<Tails>>,
     pub(super) variances: Vec<Option<VarianceFunction>>,
     /// Roots of the variances of the samples that it was estimated from; empty where all are 1.
@@ -63,26 +64,22 @@ impl Coloured {
         of.iter().map(|s| s.ln()).sum::<f64>() * known
     }
 
+    /// A filter of each output over its part of a series.
     fn each(
         &self,
         series: &[f64],
-        filter: impl Fn(&Autoregressive, &[f64], &[Range<usize>], &mut [f64]),
+        filter: impl Fn(&OutputNoise, &[f64], &[Range<usize>]) -> Vec<f64>,
     ) -> Vec<f64> {
-        let mut out = vec![0.0; series.len()];
-        let length = self.stretches.per_output.max(1);
-        for ((x, out), noise) in series.chunks(length).zip(out.chunks_mut(length)).zip(&self.noise)
-        {
-            filter(noise, x, &self.stretches.spans, out);
-        }
-        out
+        let parts = series.chunks(self.stretches.per_output.max(1)).zip(&self.noise);
+        parts.flat_map(|(x, noise)| filter(noise, x, &self.stretches.spans)).collect()
     }
 }
 
 impl Whitener for Coloured {
     fn whiten(&self, series: &[f64]) -> Vec<f64> {
         let mut white = match self.deviations.is_empty() {
-            true => self.each(series, Autoregressive::whiten),
-            false => self.each(&self.even(series), Autoregressive::whiten),
+            true => self.each(series, OutputNoise::whiten),
+            false => self.each(&self.even(series), OutputNoise::whiten),
         };
         white.iter_mut().zip(&self.weights).for_each(|(z, weight)| *z *= weight);
         white
@@ -91,7 +88,7 @@ impl Whitener for Coloured {
     fn colour(&self, white: &[f64]) -> Vec<f64> {
         let mut even = white.to_vec();
         even.iter_mut().zip(&self.weights).for_each(|(z, weight)| *z /= weight);
-        let mut series = self.each(&even, Autoregressive::colour);
+        let mut series = self.each(&even, OutputNoise::colour);
         series.iter_mut().zip(&self.deviations).for_each(|(x, deviation)| *x *= deviation);
         series
     }
@@ -101,7 +98,7 @@ impl Whitener for Coloured {
     }
 
     fn remembers(&self) -> bool {
-        self.noise.iter().any(|noise| noise.order() > 0)
+        self.noise.iter().any(OutputNoise::remembers)
     }
 
     fn over(&self, stretches: &Stretches, residual: &[f64]) -> Estimated {

@@ -1,19 +1,18 @@
 //! The disturbance that suits a residual best: autoregressive noise per output over stretches of samples,
-//! of one variance or one that follows the signal or time, of normal or of t innovations; each is kept
+//! with or without a sensor that wanders, of one variance or one that follows the signal or time, of normal or of t innovations; each is kept
 //! where it is the more probable, its own numbers paid for.
 
 use std::sync::Arc;
 
 use super::coloured::Coloured;
-use super::noise::Autoregressive;
+use super::output_noise::OutputNoise;
 use super::stretches::Stretches;
 use super::tails::Tails;
 use super::variance::{Seen, VarianceFunction};
 use super::whitener::{Estimated, NoiseModel, Whitener};
-use crate::statistics::dot;
 
 impl Stretches {
-    pub(super) fn filter(&self, noise: Vec<Autoregressive>) -> Coloured {
+    pub(super) fn filter(&self, noise: Vec<OutputNoise>) -> Coloured {
         Coloured {
             stretches: self.clone(),
             tails: vec![None; noise.len()],
@@ -26,7 +25,7 @@ impl Stretches {
 
     /// The normal disturbance of a residual, of one variance per output.
     pub fn normal(&self, residual: &[f64]) -> Coloured {
-        let one = |(r, count): (&[f64], f64)| Autoregressive::estimate(r, &self.spans, count);
+        let one = |(r, count): (&[f64], f64)| OutputNoise::estimate(r, &self.spans, count);
         self.filter(self.per_output(residual).map(one).collect())
     }
 
@@ -74,7 +73,7 @@ impl Stretches {
         white: &[f64],
         residual: &[f64],
     ) -> (Coloured, f64) {
-        let one = |(o, ((w, count), noise)): (usize, ((&[f64], f64), &Autoregressive))| {
+        let one = |(o, ((w, count), noise)): (usize, ((&[f64], f64), &OutputNoise))| {
             let spent = if of.variances[o].is_some() { count.max(1.0).ln() } else { 0.0 };
             noise.log_likelihood(w, &self.spans, count) - of.log_deviation(o) - spent
         };
@@ -110,7 +109,7 @@ impl NoiseModel for Stretches {
     }
 
     fn white(&self, residual: &[f64]) -> Arc<dyn Whitener> {
-        let one = |(r, count): (&[f64], f64)| Autoregressive::white(dot(r, r) / count.max(1.0));
+        let one = |(r, count): (&[f64], f64)| OutputNoise::white(r, count);
         Arc::new(self.filter(self.per_output(residual).map(one).collect()))
     }
 }

@@ -1,14 +1,16 @@
 //! How probable a model is, given the data.
 //!
 //! ln p(M | y) = ln p(y | theta, M) - 1/2 ln det(I + W J'J W) + ln p(theta) + ln p(M) + constant:
-//! the likelihood at the fitted numbers theta with the disturbance as a nuisance (`noise`, `tails`,
-//! `variance`, `whitener`), the Occam factor of Laplace's approximation (`laplace`; MacKay, Neural
+//! the likelihood at the fitted numbers theta with the disturbance as a nuisance (`noise`,
+//! `local_level`, `tails`, `variance`, `whitener`), the Occam factor of Laplace's approximation (`laplace`; MacKay, Neural
 //! Computation 4, 1992) and the prior of the structure (`prior`).
 
 mod coloured;
 mod estimated;
 mod laplace;
+mod local_level;
 mod noise;
+mod output_noise;
 mod prior;
 mod savage_dickey;
 mod stretches;

@@ -1,0 +1,214 @@
+//! A sensor that wanders, read with white noise: a random walk plus noise, the local level model.
+//!
+//! r[t] = m[t] + e[t], m[t+1] = m[t] + d[t], var(e) = v, var(d) = q v, var(m[0]) = n q v (Harvey, "Forecasting,
+//! Structural Time Series Models and the Kalman Filter", 1989, section 2.3): before a record of n samples the
+//! sensor has wandered for as long as it does in it. Its Kalman filter is the whitening filter,
+//!
+//! ```text
+//! w[t] = r[t] - a[t],  a[t+1] = a[t] + K[t] w[t],  K = P/(P + 1),  P[t+1] = K[t] + q,  P[0] = n q,
+//! ```
+//!
+//! var(w[t]) = v (P[t] + 1). It is integrated moving-average noise, ARIMA(0,1,1), with a moving average near 1 where the
+//! steps are small, which no autoregressive model of low order is.
+
+use std::ops::Range;
+
+/// Values of q that are looked at in a pass, and passes, each about the best one of the pass before.
+const VALUES: usize = 8;
+const PASSES: usize = 3;
+/// The largest q: nearly all of what is left is the walk.
+const LARGEST: f64 = 4.0;
+/// Change of a gain from sample to sample at which it has settled, as a share.
+const SETTLED: f64 = 1e-6;
+
+/// A walk beside white noise, by the gains of its predictor.
+#[derive(Debug, Clone)]
+pub(crate) struct LocalLevel {
+    /// Gains K of the first samples of a stretch, up to the one that stays.
+    gains: Vec<f64>,
+    /// Deviations of what is not foretold of the same samples, over that of the last.
+    deviations: Vec<f64>,
+}
+
+impl LocalLevel {
+    /// The walk whose steps have the variance q, that of the noise being 1, in stretches of `n` samples.
+    fn with(q: f64, n: usize) -> Self {
+        let (mut gains, mut deviations) = (vec![], vec![]);
+        let mut p = n as f64 * q;
+        loop {
+            let gain = p / (p + 1.0);
+            gains.push(gain);
+            deviations.push((p + 1.0).sqrt());
+            let next = gain + q;
+            if (next - p).abs() <= SETTLED * p || gains.len() >= n {
+                break;
+            }
+            p = next;
+        }
+        let last = deviations[deviations.len() - 1];
+        deviations.iter_mut().for_each(|s| *s /= last);
+        Self { gains, deviations }
+    }
+
+    /// The most probable walk behind a residual.
+    pub fn estimate(r: &[f64], stretches: &[Range<usize>], count: f64) -> Self {
+        let n = stretches.iter().map(Range::len).max().unwrap_or(0).max(2);
+        let (mut low, mut high) = (-2.0 * (n as f64).ln(), LARGEST.ln());
+        let mut best = low;
+        for _ in 0..PASSES {
+            let step = (high - low) / (VALUES - 1) as f64;
+            let values: [f64; VALUES] = std::array::from_fn(|i| low + step * i as f64);
+            let found = log_likelihoods(values.map(f64::exp), n, r, stretches, count);
+            let most = (0..VALUES).max_by(|&a, &b| found[a].total_cmp(&found[b])).unwrap_or(0);
+            best = values[most];
+            (low, high) = (best - step, best + step);
+        }
+        Self::with(best.exp(), n)
+    }
+
+    /// What the past does not foretell, in units of the deviation that it has in the end, but for a factor.
+    pub fn whiten(&self, r: &[f64], stretches: &[Range<usize>], out: &mut [f64]) {
+        let (last, first) = self.parts();
+        for s in stretches {
+            let mut level = 0.0;
+            let (x, out) = (&r[s.clone()], &mut out[s.clone()]);
+            for (t, (x, out)) in x.iter().zip(out).enumerate() {
+                let left = x - level;
+                match first.get(t) {
+                    Some((gain, deviation)) => {
+                        level += gain * left;
+                        *out = left / deviation;
+                    }
+                    None => {
+                        level += last * left;
+                        *out = left;
+                    }
+                }
+            }
+        }
+    }
+
+    /// The inverse of [`Self::whiten`], in place.
+    pub fn colour(&self, series: &mut [f64], stretches: &[Range<usize>]) {
+        let (last, first) = self.parts();
+        for s in stretches {
+            let mut level = 0.0;
+            for (t, x) in series[s.clone()].iter_mut().enumerate() {
+                let (gain, deviation) = first.get(t).copied().unwrap_or((last, 1.0));
+                let left = *x * deviation;
+                *x = left + level;
+                level += gain * left;
+            }
+        }
+    }
+
+    /// The gain that stays, and gains and deviations before.
+    fn parts(&self) -> (f64, Vec<(f64, f64)>) {
+        let both = self.gains.iter().copied().zip(self.deviations.iter().copied());
+        (self.gains[self.gains.len() - 1], both.collect())
+    }
+
+    /// Sum of the logarithms of the variances of `count` known samples, that of the last being 1.
+    pub fn log_determinant(&self, stretches: &[Range<usize>], count: f64) -> f64 {
+        let one = |s: &Range<usize>| -> f64 {
+            self.deviations.iter().take(s.len()).map(|s| 2.0 * s.ln()).sum()
+        };
+        let samples: f64 = stretches.iter().map(|s| s.len() as f64).sum();
+        stretches.iter().map(one).sum::<f64>() * count / samples.max(1.0)
+    }
+}
+
+/// Logarithms of the likelihoods of walks at the variances of the noise that suit them best, but for a constant.
+fn log_likelihoods(
+    q: [f64; VALUES],
+    n: usize,
+    r: &[f64],
+    stretches: &[Range<usize>],
+    count: f64,
+) -> [f64; VALUES] {
+    let walks = q.map(|q| LocalLevel::with(q, n));
+    let settled = walks.iter().map(|walk| walk.gains.len()).max().unwrap_or(0);
+    let mut squares = [0.0; VALUES];
+    for s in stretches {
+        let mut levels = [0.0; VALUES];
+        let x = &r[s.clone()];
+        for (t, x) in x.iter().enumerate().take(settled) {
+            for (i, walk) in walks.iter().enumerate() {
+                let at = t.min(walk.gains.len() - 1);
+                let left = x - levels[i];
+                levels[i] += walk.gains[at] * left;
+                squares[i] += (left / walk.deviations[at]).powi(2);
+            }
+        }
+        let gains: [f64; VALUES] = std::array::from_fn(|i| walks[i].parts().0);
+        for x in x.iter().skip(settled) {
+            for i in 0..VALUES {
+                let left = x - levels[i];
+                levels[i] += gains[i] * left;
+                squares[i] += left * left;
+            }
+        }
+    }
+    let of = |i: usize| {
+        let variance = (squares[i] / count.max(1.0)).max(1e-300);
+        -0.5 * (count * variance.ln() + walks[i].log_determinant(stretches, count))
+    };
+    std::array::from_fn(of)
+}
+
+#[cfg(test)]
+#[allow(clippy::single_range_in_vec_init)] // a record of one segment
+mod tests {
+    use super::*;
+    use crate::data::Random;
+    use crate::statistics::dot;
+    use approx::assert_relative_eq;
+
+    fn wandering(n: usize, q: f64, seed: u64) -> Vec<f64> {
+        let mut random = Random::new(seed);
+        let mut level = 0.0;
+        let mut one = || {
+            level += q.sqrt() * random.normal();
+            level + random.normal()
+        };
+        (0..n).map(|_| one()).collect()
+    }
+
+    #[test]
+    fn the_likelihood_is_that_of_the_covariance() {
+        // cov(t, s) = n q + min(t, s) q + (t = s), a stretch knows nothing of another
+        let (q, stretches) = (0.3, [0..5, 5..9]);
+        let r = wandering(9, q, 2);
+        let walk = LocalLevel::with(q, 5);
+        let mut white = vec![0.0; 9];
+        walk.whiten(&r, &stretches, &mut white);
+        let last =
+            walk.gains[walk.gains.len() - 1] / (1.0 - walk.gains[walk.gains.len() - 1]) + 1.0;
+        let own =
+            walk.log_determinant(&stretches, 9.0) + 9.0 * last.ln() + dot(&white, &white) / last;
+        let mut exact = 0.0;
+        for s in &stretches {
+            let covariance = nalgebra::DMatrix::from_fn(s.len(), s.len(), |i, j| {
+                5.0 * q + i.min(j) as f64 * q + f64::from(u8::from(i == j))
+            });
+            let x = nalgebra::DVector::from_column_slice(&r[s.clone()]);
+            exact += covariance.determinant().ln() + x.dot(&covariance.lu().solve(&x).unwrap());
+        }
+        assert_relative_eq!(own, exact, epsilon = 1e-9);
+    }
+
+    #[test]
+    fn a_known_walk_is_found_and_made_white() {
+        for q in [1e-4, 1e-2, 1.0] {
+            let (r, all) = (wandering(20_000, q, 5), [0..20_000]);
+            let walk = LocalLevel::estimate(&r, &all, 20_000.0);
+            let of = |q: f64| LocalLevel::with(q, 20_000).parts().0;
+            assert_relative_eq!(walk.parts().0, of(q), max_relative = 0.2);
+            let mut white = vec![0.0; r.len()];
+            walk.whiten(&r, &all, &mut white);
+            assert!(crate::statistics::whiteness(&white).abs() < 3.0);
+            walk.colour(&mut white, &all);
+            assert!(white.iter().zip(&r).all(|(a, b)| (a - b).abs() < 1e-9));
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! The noise of one output: autoregressive (`super::noise`), or beside a sensor that wanders
+//! (`super::local_level`), whichever is the more probable.
+//!
+//! W = W_ar W_level: what the walk's predictor leaves has autoregressive noise of its own. q, the size of the walk's
+//! steps, is paid for as a coefficient is (Schwarz, Annals of Statistics 6, 1978).
+
+use std::ops::Range;
+
+use super::local_level::LocalLevel;
+use super::noise::Autoregressive;
+use crate::statistics::dot;
+
+/// Noise of one output.
+#[derive(Debug, Clone)]
+pub(crate) struct OutputNoise {
+    /// The walk of the sensor, where there is one.
+    level: Option<LocalLevel>,
+    /// What it leaves.
+    rest: Autoregressive,
+}
+
+impl OutputNoise {
+    /// White noise of the mean square of a residual, of which `count` samples are known.
+    pub fn white(r: &[f64], count: f64) -> Self {
+        Self { level: None, rest: Autoregressive::white(dot(r, r) / count.max(1.0)) }
+    }
+
+    /// The most probable noise behind a residual; samples that are not known stand in it as 0, and
+    /// `count` are known.
+    pub fn estimate(r: &[f64], stretches: &[Range<usize>], count: f64) -> Self {
+        let without = Self { level: None, rest: Autoregressive::estimate(r, stretches, count) };
+        // a walk leaves neighbours alike
+        if without.rest.order() == 0 {
+            return without;
+        }
+        let level = LocalLevel::estimate(r, stretches, count);
+        let mut left = vec![0.0; r.len()];
+        level.whiten(r, stretches, &mut left);
+        let rest = Autoregressive::estimate(&left, stretches, count);
+        let with = Self { level: Some(level), rest };
+        let probable =
+            |noise: &Self| noise.log_likelihood(&noise.whiten(r, stretches), stretches, count);
+        if probable(&with) > probable(&without) { with } else { without }
+    }
+
+    /// Whether a sample says something of the next.
+    pub fn remembers(&self) -> bool {
+        self.level.is_some() || self.rest.order() > 0
+    }
+
+    /// Standard deviation of what the whole past does not foretell.
+    pub fn deviation(&self) -> f64 {
+        self.rest.deviation()
+    }
+
+    /// What the past does not foretell, in units of its standard deviation.
+    pub fn whiten(&self, r: &[f64], stretches: &[Range<usize>]) -> Vec<f64> {
+        let mut white = vec![0.0; r.len()];
+        match &self.level {
+            None => self.rest.whiten(r, stretches, &mut white),
+            Some(level) => {
+                let mut left = vec![0.0; r.len()];
+                level.whiten(r, stretches, &mut left);
+                self.rest.whiten(&left, stretches, &mut white);
+            }
+        }
+        white
+    }
+
+    /// The inverse of [`Self::whiten`].
+    pub fn colour(&self, white: &[f64], stretches: &[Range<usize>]) -> Vec<f64> {
+        let mut series = vec![0.0; white.len()];
+        self.rest.colour(white, stretches, &mut series);
+        if let Some(level) = &self.level {
+            level.colour(&mut series, stretches);
+        }
+        series
+    }
+
+    /// Logarithm of the likelihood of a residual that [`Self::whiten`] made white, but for a constant,
+    /// at the variance that suits it best; ln(N) / 2 is paid for each number.
+    pub fn log_likelihood(&self, white: &[f64], stretches: &[Range<usize>], count: f64) -> f64 {
+        let of_level = self
+            .level
+            .as_ref()
+            .map_or(0.0, |level| level.log_determinant(stretches, count) + count.max(1.0).ln());
+        self.rest.log_likelihood(white, stretches, count) - 0.5 * of_level
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::single_range_in_vec_init)] // a record of one segment
+mod tests {
+    use super::*;
+    use crate::data::Random;
+
+    /// A walk beside white noise, and what a first-order process has.
+    fn walk_and_fade(n: usize, seed: u64) -> [Vec<f64>; 2] {
+        let mut random = Random::new(seed);
+        let (mut level, mut state) = (0.0, 0.0);
+        let mut both = [vec![], vec![]];
+        for _ in 0..n {
+            level += 0.02 * random.normal();
+            both[0].push(level + random.normal());
+            state = 0.9 * state + random.normal();
+            both[1].push(state);
+        }
+        both
+    }
+
+    #[test]
+    fn a_walk_is_told_from_a_process_that_fades() {
+        for seed in 0..10 {
+            let all = [0..4000];
+            let [walk, fade] = walk_and_fade(4000, seed);
+            let found = OutputNoise::estimate(&walk, &all, 4000.0);
+            assert!(found.level.is_some(), "{seed}");
+            assert_eq!(found.rest.order(), 0);
+            let white = found.whiten(&walk, &all);
+            assert!((dot(&white, &white) / 4000.0 - 1.0).abs() < 1e-9);
+            let back = found.colour(&white, &all);
+            assert!(back.iter().zip(&walk).all(|(a, b)| (a - b).abs() < 1e-9));
+            assert!(OutputNoise::estimate(&fade, &all, 4000.0).level.is_none(), "{seed}");
+        }
+    }
+}
