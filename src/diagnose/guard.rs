@@ -8,7 +8,7 @@
 //! ```
 //!
 //! the bound that the search has for what it fits. A model that exceeds it, and whose errors are less probable
-//! by 20 to 1 as autoregressive noise, is no hypothesis any more: errors that only drift with what disturbs the
+//! by 20 to 1 as coloured noise, is no hypothesis any more: errors that only drift with what disturbs the
 //! plant are larger or smaller by chance. Of the models with one law less, or without the move of the parameters,
 //! that are not refuted, the most probable one by the records that were fitted is the answer; where all are, the
 //! one that exceeds the bound least is looked at in the same way (backward elimination: Miller, "Subset Selection
@@ -67,7 +67,7 @@ fn ratio(of: &Scored, over: &Scored) -> f64 {
     if ratios.is_empty() { 1.0 } else { ratios.iter().sum::<f64>() / ratios.len() as f64 }
 }
 
-/// By how much more probable errors are than others, as a logarithm, each output's in the autoregressive
+/// By how much more probable errors are than others, as a logarithm, each output's in the coloured
 /// noise that suits them: a simulation that drifts with what disturbs the plant is no worse for it.
 fn gain(of: &Scored, over: &Scored) -> f64 {
     let one = |(of, over): (&Vec<f64>, &Vec<f64>)| {

@@ -1,172 +1,187 @@
-//! Autoregressive noise: whitening by Levinson's recursion, order by Schwarz's criterion.
+//! Autoregressive noise of one output: e[t] = a_1 e[t-1] + ... + a_p e[t-p] + eps[t], var(eps) = v.
 //!
-//! e[k] = sum_i a_i e[k-i] + eps, eps of variance s^2 v_p. The predictors of all lower orders, with
-//! their variances v_0 > v_1 > .. > v_p = 1, whiten the first samples of each stretch too, so that
-//! log L = -1/2 sum( ln(2 pi s^2 v(k)) + eps(k)^2 / (s^2 v(k)) ) is the density of the whole stretch.
-//! Sources: Levinson, J. Math. Phys. 25, 1947; Ljung, "System Identification", 2nd ed., section 7.4;
-//! Brockwell and Davis, "Time Series: Theory and Methods", 2nd ed., section 5.2.
+//! Yule-Walker equations of the uncentred autocovariances, solved for all orders at once (Levinson
+//! 1947; Durbin 1960); the order by the Bayesian information criterion (Schwarz 1978). The predictors
+//! of the lower orders whiten the first p samples of each stretch, so that these have a likelihood too.
 
-use crate::statistics::levinson;
+use std::ops::Range;
 
-/// Largest order.
-pub(crate) const MOST: usize = 16;
+use crate::statistics::{dot, levinson};
 
-/// A process of some order, and the predictors of all lower ones.
+/// Highest order, and samples that each coefficient needs.
+const ORDER: usize = 16;
+const SAMPLES: f64 = 10.0;
+
+/// Noise of one output.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Autoregression {
-    /// Variance of what cannot be predicted, in the square of the output's unit.
-    pub variance: f64,
-    /// Coefficients of the predictor: the newest past value's first.
-    pub coefficients: Vec<f64>,
-    /// Predictors of order 0, 1, ..., each with its variance over that of the last.
-    pub(crate) predictors: Vec<(Vec<f64>, f64)>,
+pub(crate) struct Autoregressive {
+    /// Coefficients of the best predictors of order 0, 1, ... p, the latest sample first.
+    predictors: Vec<Vec<f64>>,
+    /// Variances of what each leaves.
+    variances: Vec<f64>,
 }
 
-impl Autoregression {
-    /// The process of a series whose stretches are runs of finite values; the order is chosen by
-    /// Schwarz's criterion, at most 16.
-    pub fn of(series: &[f64]) -> Self {
-        let count = series.iter().filter(|e| e.is_finite()).count().max(1) as f64;
-        let most = MOST.min((count / 10.0) as usize);
-        let predictors: Vec<(Vec<f64>, f64)> = levinson(&covariances(series, most))
-            .into_iter()
-            .map(|found| (found.coefficients(), found.variance))
-            .collect();
-        let mut best: Option<(f64, Self)> = None;
-        for order in 0..predictors.len() {
-            let last = predictors[order].1;
-            if !(last > 0.0) {
-                break;
+impl Autoregressive {
+    /// White noise of a variance.
+    pub fn white(variance: f64) -> Self {
+        Self { predictors: vec![vec![]], variances: vec![variance.max(1e-300)] }
+    }
+
+    /// The most probable noise behind a residual; samples that are not known stand in it as 0, and
+    /// `count` are known.
+    pub fn estimate(r: &[f64], stretches: &[Range<usize>], count: f64) -> Self {
+        let at = |lag: usize| {
+            let one = |s: &Range<usize>| match s.len() > lag {
+                true => dot(&r[s.start + lag..s.end], &r[s.start..s.end - lag]),
+                false => 0.0,
+            };
+            stretches.iter().map(one).sum::<f64>() / count.max(1.0)
+        };
+        let most = ORDER.min((count / SAMPLES) as usize);
+        let mut c: Vec<f64> = (0..=most).map(at).collect();
+        c[0] = c[0].max(1e-300);
+        let (mut predictors, mut variances): (Vec<Vec<f64>>, Vec<f64>) =
+            levinson(&c).into_iter().map(|found| (found.coefficients(), found.variance)).unzip();
+        let criterion = |p: usize| count * variances[p].ln() + p as f64 * count.max(2.0).ln();
+        let order = (0..variances.len())
+            .min_by(|&a, &b| criterion(a).total_cmp(&criterion(b)))
+            .unwrap_or(0);
+        predictors.truncate(order + 1);
+        variances.truncate(order + 1);
+        Self { predictors, variances }
+    }
+
+    /// The same of so many times the variance.
+    pub fn scaled(mut self, by: f64) -> Self {
+        self.variances.iter_mut().for_each(|v| *v = (*v * by).max(1e-300));
+        self
+    }
+
+    /// Coefficients of the predictor, the latest sample first.
+    #[cfg(test)]
+    pub fn coefficients(&self) -> &[f64] {
+        &self.predictors[self.order()]
+    }
+
+    /// Number of coefficients, p.
+    pub fn order(&self) -> usize {
+        self.predictors.len() - 1
+    }
+
+    /// Standard deviation of what the whole past does not foretell.
+    pub fn deviation(&self) -> f64 {
+        self.variances[self.order()].sqrt()
+    }
+
+    /// What the past does not foretell, in units of its standard deviation.
+    pub fn whiten(&self, r: &[f64], stretches: &[Range<usize>], out: &mut [f64]) {
+        let order = self.order();
+        let over: Vec<f64> = self.variances.iter().map(|v| 1.0 / v.sqrt()).collect();
+        let turned: Vec<f64> = self.predictors[order].iter().rev().copied().collect();
+        for s in stretches {
+            let (x, out) = (&r[s.clone()], &mut out[s.clone()]);
+            for t in 0..x.len().min(order) {
+                out[t] = (x[t] - predicted(&self.predictors[t], x, t)) * over[t];
             }
-            let own: Vec<_> =
-                predictors[..=order].iter().map(|(a, v)| (a.clone(), v / last)).collect();
-            let mut process =
-                Self { variance: 1.0, coefficients: predictors[order].0.clone(), predictors: own };
-            let (white, logs) = process.whitened(series);
-            let square: f64 = white.iter().filter(|e| e.is_finite()).map(|e| e * e).sum();
-            process.variance = (square / count).max(f64::MIN_POSITIVE);
-            let value = -0.5 * (count * (process.variance.ln() + 1.0) + logs);
-            let merit = value - 0.5 * order as f64 * count.ln();
-            if best.as_ref().is_none_or(|(known, _)| merit > *known) {
-                best = Some((merit, process));
+            for t in order..x.len() {
+                out[t] = (x[t] - dot(&turned, &x[t - order..t])) * over[order];
             }
         }
-        best.map_or_else(Self::nothing, |(_, process)| process)
     }
 
-    /// White noise of no size: of a series without a finite value.
-    fn nothing() -> Self {
-        let predictors = vec![(vec![], 1.0)];
-        Self { variance: f64::MIN_POSITIVE, coefficients: vec![], predictors }
+    /// The inverse of [`Self::whiten`].
+    pub fn colour(&self, white: &[f64], stretches: &[Range<usize>], out: &mut [f64]) {
+        let order = self.order();
+        let sizes: Vec<f64> = self.variances.iter().map(|v| v.sqrt()).collect();
+        for s in stretches {
+            let (w, x) = (&white[s.clone()], &mut out[s.clone()]);
+            for t in 0..w.len() {
+                let p = t.min(order);
+                let past = predicted(&self.predictors[p], x, t);
+                x[t] = w[t] * sizes[p] + past;
+            }
+        }
     }
 
-    /// Its order.
-    pub fn order(&self) -> usize {
-        self.coefficients.len()
-    }
-
-    /// What cannot be predicted, every value over the root of its relative variance, and the sum of
-    /// the logarithms of these variances. Values after a gap begin anew.
-    pub(crate) fn whitened(&self, series: &[f64]) -> (Vec<f64>, f64) {
-        let (mut known, mut logs) = (0, 0.0);
-        let white = (0..series.len())
-            .map(|k| {
-                if !series[k].is_finite() {
-                    known = 0;
-                    return f64::NAN;
-                }
-                let (a, v) = &self.predictors[known.min(self.order())];
-                known += 1;
-                logs += v.ln();
-                let expected: f64 = a.iter().enumerate().map(|(i, a)| a * series[k - 1 - i]).sum();
-                (series[k] - expected) / v.sqrt()
-            })
-            .collect();
-        (white, logs)
-    }
-
-    /// Log density of a series.
-    pub fn log_likelihood(&self, series: &[f64]) -> f64 {
-        let (white, logs) = self.whitened(series);
-        let finite = || white.iter().filter(|e| e.is_finite());
-        let square: f64 = finite().map(|e| e * e).sum();
-        let count = finite().count() as f64;
-        let each = (std::f64::consts::TAU * self.variance).ln();
-        -0.5 * (count * each + logs + square / self.variance)
+    /// Sum of the logarithms of the variances of all predictions of `count` known samples.
+    pub fn log_determinant(&self, stretches: &[Range<usize>], count: f64) -> f64 {
+        let order = self.order();
+        let one = |s: &Range<usize>| {
+            let first: f64 = self.variances.iter().take(order.min(s.len())).map(|v| v.ln()).sum();
+            first + s.len().saturating_sub(order) as f64 * self.variances[order].ln()
+        };
+        let samples: f64 = stretches.iter().map(|s| s.len() as f64).sum();
+        stretches.iter().map(one).sum::<f64>() * count / samples.max(1.0)
     }
 }
 
-/// Autocovariances about 0 up to a lag; pairs across a gap do not count.
-fn covariances(series: &[f64], most: usize) -> Vec<f64> {
-    let count = series.iter().filter(|e| e.is_finite()).count().max(1) as f64;
-    (0..=most)
-        .map(|lag| {
-            let pairs = series.iter().zip(series.iter().skip(lag));
-            let finite = pairs.map(|(a, b)| a * b).filter(|product| product.is_finite());
-            finite.sum::<f64>() / count
-        })
-        .collect()
+/// What a predictor says of sample `t` of `x`.
+fn predicted(predictor: &[f64], x: &[f64], t: usize) -> f64 {
+    predictor.iter().enumerate().map(|(i, a)| a * x[t - 1 - i]).sum()
 }
 
 #[cfg(test)]
+#[allow(clippy::single_range_in_vec_init)] // a record of one segment
 mod tests {
     use super::*;
     use crate::data::Random;
 
-    /// e[k] = 1.2 e[k-1] - 0.5 e[k-2] + eps
-    fn series(n: usize) -> Vec<f64> {
-        let mut random = Random::new(3);
-        let mut e = vec![0.0, 0.0];
-        for k in 2..n + 200 {
-            e.push(1.2 * e[k - 1] - 0.5 * e[k - 2] + 0.3 * random.normal());
+    fn second_order(n: usize, seed: u64) -> Vec<f64> {
+        let mut random = Random::new(seed);
+        let mut r = vec![0.0; n];
+        for t in 2..n {
+            r[t] = 1.2 * r[t - 1] - 0.5 * r[t - 2] + 0.3 * random.normal();
         }
-        e.split_off(200)
+        r
     }
 
     #[test]
-    fn a_known_process_is_whitened() {
-        let e = series(20_000);
-        let process = Autoregression::of(&e);
-        assert_eq!(process.order(), 2);
-        for (found, known) in process.coefficients.iter().zip([1.2, -0.5]) {
-            assert!((found - known).abs() < 0.02, "{found} {known}");
-        }
-        assert!((process.variance - 0.09).abs() < 0.003, "{}", process.variance);
-        let (white, _) = process.whitened(&e);
-        let lag: f64 = white.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / 20_000.0;
-        assert!(lag.abs() < 0.02 * 0.09);
+    fn a_known_process_is_found_and_made_white() {
+        let r = second_order(20_000, 3);
+        let all = [0..r.len()];
+        let noise = Autoregressive::estimate(&r, &all, r.len() as f64);
+        assert_eq!(noise.order(), 2);
+        assert!((noise.predictors[2][0] - 1.2).abs() < 0.03, "{:?}", noise.predictors[2]);
+        assert!((noise.predictors[2][1] + 0.5).abs() < 0.03, "{:?}", noise.predictors[2]);
+        assert!((noise.variances[2].sqrt() - 0.3).abs() < 0.01);
+        let mut white = vec![0.0; r.len()];
+        noise.whiten(&r, &all, &mut white);
+        assert!((dot(&white, &white) / r.len() as f64 - 1.0).abs() < 0.02);
+        assert!(crate::statistics::whiteness(&white).abs() < 3.0);
+        let mut back = vec![0.0; r.len()];
+        noise.colour(&white, &all, &mut back);
+        assert!(back.iter().zip(&r).all(|(a, b)| (a - b).abs() < 1e-9));
     }
 
     #[test]
-    fn the_density_is_the_multivariate_normal_one() {
-        let e = series(12);
-        let process = Autoregression {
-            variance: 0.09,
-            coefficients: vec![0.8],
-            predictors: vec![(vec![], 1.0 / 0.36), (vec![0.8], 1.0)],
+    fn white_noise_has_no_coefficients() {
+        let mut random = Random::new(5);
+        let r: Vec<f64> = (0..4000).map(|_| random.normal()).collect();
+        assert_eq!(Autoregressive::estimate(&r, &[0..4000], 4000.0).order(), 0);
+    }
+
+    #[test]
+    fn the_likelihood_of_a_first_order_process_is_that_of_its_covariance() {
+        // stationary: cov(t, s) = v a^|t-s| / (1 - a^2); two stretches know nothing of each other
+        let (a, v) = (0.7, 0.04);
+        let noise = Autoregressive {
+            predictors: vec![vec![], vec![a]],
+            variances: vec![v / (1.0 - a * a), v],
         };
-        // covariance of a process of first order: s^2 a^|i-j| / (1 - a^2)
-        let covariance = nalgebra::DMatrix::from_fn(12, 12, |i, j| {
-            0.09 / 0.36 * 0.8_f64.powi((i as i32 - j as i32).abs())
-        });
-        let root = covariance.cholesky().unwrap();
-        let off = nalgebra::DVector::from_vec(e.clone());
-        let square = off.dot(&root.solve(&off));
-        let determinant: f64 = root.l().diagonal().iter().map(|d| 2.0 * d.ln()).sum();
-        let exact = -0.5 * (12.0 * std::f64::consts::TAU.ln() + determinant + square);
-        let found = process.log_likelihood(&e);
-        assert!((found - exact).abs() < 1e-9, "{found} {exact}");
-    }
-
-    #[test]
-    fn a_gap_begins_anew() {
-        let mut e = series(200);
-        e[100] = f64::NAN;
-        let process = Autoregression::of(&e);
-        let (white, _) = process.whitened(&e);
-        assert!(white[100].is_nan());
-        assert_eq!(white.iter().filter(|w| w.is_finite()).count(), 199);
-        let v = process.predictors[0].1;
-        assert_eq!(white[101], e[101] / v.sqrt());
+        let mut random = Random::new(1);
+        let r: Vec<f64> = (0..7).map(|_| 0.2 * random.normal()).collect();
+        let stretches = [0..4, 4..7];
+        let mut white = vec![0.0; 7];
+        noise.whiten(&r, &stretches, &mut white);
+        let mut exact = 0.0;
+        for s in &stretches {
+            let covariance = nalgebra::DMatrix::from_fn(s.len(), s.len(), |i, j| {
+                v / (1.0 - a * a) * a.powi(i.abs_diff(j) as i32)
+            });
+            let x = nalgebra::DVector::from_column_slice(&r[s.clone()]);
+            exact += covariance.determinant().ln() + x.dot(&covariance.lu().solve(&x).unwrap());
+        }
+        let own = noise.log_determinant(&stretches, 7.0) + dot(&white, &white);
+        assert!((own - exact).abs() < 1e-10, "{own} {exact}");
     }
 }

@@ -34,9 +34,11 @@ mod intensities;
 mod kalman;
 mod lacking;
 mod laws;
+mod local_level;
 mod missing;
 mod model;
 mod noise;
+mod output_noise;
 mod own_gain;
 mod parametrised;
 mod path;
@@ -67,12 +69,12 @@ pub use ranked::RankedPlaces;
 // machinery that sibling crates and the program share; it may change at any time
 #[doc(hidden)]
 pub use self::{
-    autoregressive::Autoregression,
     explanation::{Explanation, NamedCause},
     held_out::refutes,
     missing::Explained,
     model::{Fitted, NoiseModel},
     noise::{Component, Slow},
+    output_noise::OutputNoise,
     predictor::Innovations,
     ranked::{FittedLaws, RankedPlace},
     scope::Scope,

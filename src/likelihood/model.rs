@@ -1,16 +1,16 @@
 //! Noise models that compete on the same data by the same criterion.
 //!
-//! A predictor with noise inside the plant, or a free run whose error is autoregressive: the special
+//! A predictor with noise inside the plant, or a free run whose error is coloured noise: the special
 //! case without noise inside the plant (Ljung, "System Identification", 2nd ed., section 4.2: output
 //! error with coloured noise). Compared by log L - (numbers) / 2 ln(samples) (Schwarz, Annals of
 //! Statistics 6, 1978); the initial states are integrated over the same Gaussian prior in both.
 
 use nalgebra::{DMatrix, DVector};
 
-use super::autoregressive::Autoregression;
 use super::error::LikelihoodError;
 use super::follow::{Start, Wanted};
 use super::noise::Noise;
+use super::output_noise::OutputNoise;
 use super::parametrised::Model;
 use super::path::Path;
 use super::predictor::{Predictor, column};
@@ -23,8 +23,8 @@ const STARTS: usize = 8;
 pub enum NoiseModel {
     /// Inside the plant and at its sensors: the innovations of a predictor.
     Predictor(Noise),
-    /// At the outputs alone: the error of a free run is autoregressive, one process per output.
-    FreeRunAutoregressive(Vec<Autoregression>),
+    /// At the outputs alone: the error of a free run is coloured, noise of its own per output.
+    FreeRun(Vec<OutputNoise>),
 }
 
 /// A noise model fitted to records.
@@ -66,7 +66,7 @@ impl Predictor {
         })
     }
 
-    /// A free run with autoregressive error, its initial states estimated.
+    /// A free run with coloured error, its initial states estimated.
     ///
     /// # Errors
     ///
@@ -86,9 +86,9 @@ impl Predictor {
                 break;
             }
         }
-        let numbers = best.processes.iter().map(|process| process.order() + 1).sum();
+        let numbers = best.noises.iter().map(OutputNoise::numbers).sum();
         Ok(Fitted {
-            noise: NoiseModel::FreeRunAutoregressive(best.processes),
+            noise: NoiseModel::FreeRun(best.noises),
             log_likelihood: best.value,
             numbers,
             samples: self.observed() as usize,
@@ -117,10 +117,10 @@ impl Predictor {
         }
         let ny = run.path.outputs;
         let errors: Vec<Vec<f64>> = (0..ny).map(|o| column(&run.path.e, ny, o)).collect();
-        let processes: Vec<_> = errors.iter().map(|e| Autoregression::of(e)).collect();
-        let fit: f64 = processes.iter().zip(&errors).map(|(p, e)| p.log_likelihood(e)).sum();
+        let noises: Vec<_> = errors.iter().map(|e| OutputNoise::of(e)).collect();
+        let fit: f64 = noises.iter().zip(&errors).map(|(p, e)| p.log_density(e)).sum();
         let mut found =
-            FreeRun { path: run.path, start: start.clone(), processes, errors, value: fit };
+            FreeRun { path: run.path, start: start.clone(), noises, errors, value: fit };
         found.value -= self.start_cost(&found);
         Ok(found)
     }
@@ -164,11 +164,11 @@ impl Predictor {
     }
 }
 
-/// A free run, its errors and their processes.
+/// A free run, its errors and their noises.
 struct FreeRun {
     path: Path,
     start: Start,
-    processes: Vec<Autoregression>,
+    noises: Vec<OutputNoise>,
     errors: Vec<Vec<f64>>,
     value: f64,
 }
@@ -192,13 +192,13 @@ impl FreeRun {
         }
         let (mut square, mut slope) = (DMatrix::zeros(nx, nx), DVector::zeros(nx));
         for o in 0..ny {
-            let process = &self.processes[o];
-            let white = |series: &[f64]| process.whitened(series).0;
+            let noise = &self.noises[o];
+            let white = |series: &[f64]| noise.whitened(series);
             let e = white(&self.errors[o][range.clone()]);
             let own: Vec<Vec<f64>> = (0..nx).map(|j| white(&columns[o * nx + j])).collect();
             let dot = |a: &[f64], b: &[f64]| -> f64 {
                 let products = a.iter().zip(b).map(|(a, b)| a * b);
-                products.filter(|p| p.is_finite()).sum::<f64>() / process.variance
+                products.filter(|p| p.is_finite()).sum::<f64>()
             };
             for i in 0..nx {
                 slope[i] += dot(&own[i], &e);

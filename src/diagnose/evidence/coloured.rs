@@ -2,17 +2,17 @@
 //! the predictor, then the weights of the samples.
 //!
 //! W r = w[t] (u[t] - a_1 u[t-1] - ... - a_p u[t-p]) / s, u[t] = r[t] / sqrt(v[t]), or what the predictor of a
-//! sensor that wanders leaves of it: `super::output_noise`, `super::variance` and `super::tails` have the
+//! sensor that wanders leaves of it: `likelihood::OutputNoise`, `super::variance` and `super::tails` have the
 //! parts and their sources.
 
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::output_noise::OutputNoise;
 use super::stretches::Stretches;
 use super::tails::Tails;
 use super::variance::VarianceFunction;
 use super::whitener::{Estimated, Whitener};
+use crate::likelihood::OutputNoise;
 
 /// Noise of every output, of normal or of t innovations and of one variance or one
 /// that follows the signal or time.

@@ -5,11 +5,11 @@
 use std::sync::Arc;
 
 use super::coloured::Coloured;
-use super::output_noise::OutputNoise;
 use super::stretches::Stretches;
 use super::tails::Tails;
 use super::variance::{Seen, VarianceFunction};
 use super::whitener::{Estimated, NoiseModel, Whitener};
+use crate::likelihood::OutputNoise;
 
 impl Stretches {
     pub(super) fn filter(&self, noise: Vec<OutputNoise>) -> Coloured {

@@ -1,16 +1,13 @@
 //! How probable a model is, given the data.
 //!
 //! ln p(M | y) = ln p(y | theta, M) - 1/2 ln det(I + W J'J W) + ln p(theta) + ln p(M) + constant:
-//! the likelihood at the fitted numbers theta with the disturbance as a nuisance (`noise`,
-//! `local_level`, `tails`, `variance`, `whitener`), the Occam factor of Laplace's approximation (`laplace`; MacKay, Neural
+//! the likelihood at the fitted numbers theta with the disturbance as a nuisance (`likelihood::OutputNoise`,
+//! `tails`, `variance`, `whitener`), the Occam factor of Laplace's approximation (`laplace`; MacKay, Neural
 //! Computation 4, 1992) and the prior of the structure (`prior`).
 
 mod coloured;
 mod estimated;
 mod laplace;
-mod local_level;
-mod noise;
-mod output_noise;
 mod prior;
 mod savage_dickey;
 mod stretches;
@@ -19,7 +16,6 @@ mod variance;
 mod whitener;
 
 pub(crate) use laplace::occam;
-pub(crate) use noise::Autoregressive;
 pub(crate) use prior::{Choices, price, width};
 pub(crate) use savage_dickey::has_moved;
 pub(crate) use stretches::Stretches;

@@ -1,7 +1,7 @@
 //! The disturbance of a model as a filter: what makes a residual, and everything that is to explain
 //! it, white with variance one.
 //!
-//! ln p(y) = -1/2 (|W r|^2 - 2 ln det W + N ln 2 pi), r = y - yhat. A free run with autoregressive
+//! ln p(y) = -1/2 (|W r|^2 - 2 ln det W + N ln 2 pi), r = y - yhat. A free run with coloured
 //! noise per output (`super::estimated`) is one such model; the innovations of a predictor are another: both
 //! are linear filters of residual and columns alike. Where the variance follows the signal or time
 //! (`super::variance`), the series are divided by its root first; where the innovations have heavier

@@ -18,7 +18,7 @@ pub(crate) fn criterion(system: &System, record: &Record) -> Option<f64> {
     Some(Rivals::of(&predictor).best()).filter(|best| best.is_finite())
 }
 
-/// The same where all noise sits at the sensors: the error of a free run is autoregressive.
+/// The same where all noise sits at the sensors: the error of a free run is coloured noise.
 pub(crate) fn free_run_criterion(system: &System, record: &Record) -> Option<f64> {
     let predictor = Predictor::new(system, std::slice::from_ref(record)).ok()?;
     let fitted = predictor.fit_free_run().ok()?;
@@ -76,7 +76,7 @@ pub(super) fn extended_by(
 
 /// An answer under both noise models; absent where it cannot be run under one.
 pub(super) struct Rivals {
-    /// The error of a free run is autoregressive.
+    /// The error of a free run is coloured noise.
     pub outside: Option<Fitted>,
     /// Noise inside the plant too.
     pub inside: Option<Fitted>,

@@ -7,7 +7,7 @@
 //!     noise inside the plant is called for beside the answer, and that foresees all that follows from inputs:
 //!         causes <- by the innovations; where noise inside the plant is called for beside them: the answer
 //! what it leaves is white                     keep it: all noise sits at the sensors
-//! free run with autoregressive noise as likely as a predictor with noise inside: keep it
+//! free run with coloured noise as likely as a predictor with noise inside: keep it
 //! causes <- by the innovations of the predictor (`likelihood::Predictor::explain`)
 //! they are more probable than the answer under either noise: they replace it
 //! ```

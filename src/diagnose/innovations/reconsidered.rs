@@ -206,7 +206,7 @@ fn by_innovations(
     let is_bare = answer.causes() + count_moved(answer) == 0;
     let noise = rivals.inside.as_ref().filter(|_| is_bare).and_then(|fitted| match &fitted.noise {
         NoiseModel::Predictor(noise) => Some(noise),
-        NoiseModel::FreeRunAutoregressive(_) => None,
+        NoiseModel::FreeRun(_) => None,
     });
     let found = base.explain(most, &held, noise, &|| watch.stopped()).ok()?;
     let known = library(problem, &prepared.nominal, &prepared.start, vec![], allowed, &());

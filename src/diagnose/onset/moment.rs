@@ -4,7 +4,7 @@
 //! p(k | y) ~ p(y | the model until k, then the extended one from the state that the model has at k)
 //! ```
 //!
-//! The errors of that run are autoregressive, with the numbers that the most probable moment leaves. The
+//! The errors of that run are coloured noise, with the numbers that the most probable moment leaves. The
 //! time is the mean of the posterior under a flat prior, its standard error the root of the variance.
 //! Source: Basseville and Nikiforov, "Detection of Abrupt Changes", 1993, section 7.2.
 
@@ -13,7 +13,7 @@ use std::ops::Range;
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run};
 use crate::findings::cause::Onset;
-use crate::likelihood::Autoregression;
+use crate::likelihood::OutputNoise;
 use crate::statistics::rms;
 use crate::system::{Drive, Origin, System};
 
@@ -60,7 +60,7 @@ pub(super) fn moment(
     let first: Vec<(usize, Errors)> = moments.iter().filter_map(errors).collect();
     let Some(noise) = noise(&first) else { return Ok(None) };
     let likely = |(k, errors): (usize, Errors)| {
-        let value: f64 = errors.iter().zip(&noise).map(|(e, own)| own.log_likelihood(e)).sum();
+        let value: f64 = errors.iter().zip(&noise).map(|(e, own)| own.log_density(e)).sum();
         value.is_finite().then_some((k, value))
     };
     let mut known: Vec<(usize, f64)> = first.into_iter().filter_map(likely).collect();
@@ -183,12 +183,12 @@ impl<'a> Runs<'a> {
 }
 
 /// The noise of every output by the moment that leaves least, were it white and of any level.
-fn noise(moments: &[(usize, Errors)]) -> Option<Vec<Autoregression>> {
+fn noise(moments: &[(usize, Errors)]) -> Option<Vec<OutputNoise>> {
     let level = |e: &Vec<f64>| {
         let known: Vec<f64> = e.iter().copied().filter(|e| e.is_finite()).collect();
         known.len() as f64 * rms(&known).ln()
     };
     let all = moments.iter().map(|(_, errors)| (errors.iter().map(level).sum::<f64>(), errors));
     let least = all.filter(|(level, _)| !level.is_nan()).min_by(|a, b| a.0.total_cmp(&b.0))?.1;
-    Some(least.iter().map(|e| Autoregression::of(e)).collect())
+    Some(least.iter().map(|e| OutputNoise::of(e)).collect())
 }

@@ -20,7 +20,7 @@ use crate::findings::cause::{Cause, in_the_machine};
 use crate::findings::hand_over::Searched;
 use crate::findings::note::Note;
 use crate::innovations::{criterion, innovations_of};
-use crate::likelihood::refutes;
+use crate::likelihood::{OutputNoise, refutes};
 use crate::system::System;
 use crate::watch::Watch;
 
@@ -162,14 +162,16 @@ fn numbers(causes: &[Cause]) -> f64 {
     in_the_machine(causes).map(of).sum::<usize>() as f64
 }
 
-/// When what a model leaves grows. Where the samples before call for noise inside the plant, a free run
-/// drifts by it and has no level: what counts is then what a predictor with that noise does not foresee
-/// (Willsky and Jones, IEEE Trans. Automatic Control 21, 1976).
+/// When what a model leaves grows: what counts is what the noise of the samples before does not foresee (Willsky
+/// and Jones, IEEE Trans. Automatic Control 21, 1976). A free run drifts by noise inside the plant, which a
+/// predictor follows, and by a sensor that wanders.
 fn first_rise(system: &System, seen: &Record) -> Result<Option<usize>, EvaluateError> {
-    let Some(at) = rise(&left(system, seen)?) else { return Ok(None) };
-    let before = seen.slice(at.saturating_sub(COMPARED)..at);
-    let innovations = innovations_of(system, seen, &before);
-    Ok(innovations.map_or(Some(at), |innovations| rise(&innovations)))
+    let left = left(system, seen)?;
+    let Some(at) = rise(&left) else { return Ok(None) };
+    let known = at.saturating_sub(COMPARED)..at;
+    let innovations = innovations_of(system, seen, &seen.slice(known.clone()));
+    let own = || left.iter().map(|e| OutputNoise::of(&e[known.clone()]).whitened(e)).collect();
+    Ok(rise(&innovations.unwrap_or_else(own)))
 }
 
 /// What a free run leaves of the measured outputs, not a number where nothing was measured.

@@ -14,7 +14,7 @@
 //!
 //! Ljung, "System Identification", 2nd ed., sections 16.4 (p / N) and 16.6.
 
-use crate::evidence::Autoregressive;
+use crate::likelihood::OutputNoise;
 use crate::statistics::{Regression, deviation, dot, mean};
 use crate::validate::noise_floor::Floor;
 
@@ -74,9 +74,8 @@ impl Simulated<'_> {
         };
         let (left, change) = (known(self.left), known(self.change));
         let count = self.left.iter().filter(|v| v.is_finite()).count() as f64;
-        let noise = Autoregressive::estimate(&left, self.segments, count);
-        let mut white = vec![0.0; change.len()];
-        noise.whiten(&change, self.segments, &mut white);
+        let noise = OutputNoise::estimate(&left, self.segments, count);
+        let white = noise.whiten(&change, self.segments);
         let ratio = dot(&change, &change) / dot(&white, &white);
         if ratio.is_finite() { ratio } else { square }
     }

@@ -78,10 +78,9 @@ fn both_noise_models_compete_on_the_same_data() {
     let all = predictor.compete().unwrap();
     assert_eq!(all.len(), 2);
     // the same process, written twice: a sensor that wanders with a pole, and a free run's error
-    let free =
-        all.iter().find(|f| matches!(f.noise, NoiseModel::FreeRunAutoregressive(_))).unwrap();
-    let NoiseModel::FreeRunAutoregressive(processes) = &free.noise else { panic!() };
-    near(processes[0].coefficients[0], 0.95, 0.02);
+    let free = all.iter().find(|f| matches!(f.noise, NoiseModel::FreeRun(_))).unwrap();
+    let NoiseModel::FreeRun(noises) = &free.noise else { panic!() };
+    near(noises[0].rest.coefficients()[0], 0.95, 0.02);
     assert!((all[0].criterion() - all[1].criterion()).abs() < 25.0, "{all:?}");
     // a disturbed plant is no free run with an error of a low order
     let sizes = Sizes { white: vec![0.5], measurement: vec![0.02], ..Sizes::default() };

@@ -1,22 +1,23 @@
-//! The noise of one output: autoregressive (`super::noise`), or beside a sensor that wanders
+//! The noise of one output: autoregressive (`super::autoregressive`), or beside a sensor that wanders
 //! (`super::local_level`), whichever is the more probable.
 //!
 //! W = W_ar W_level: what the walk's predictor leaves has autoregressive noise of its own. q, the size of the walk's
-//! steps, is paid for as a coefficient is (Schwarz, Annals of Statistics 6, 1978).
+//! steps, is paid for as a coefficient is (Schwarz, Annals of Statistics 6, 1978). Stretches know nothing of one another.
 
 use std::ops::Range;
 
+use super::autoregressive::Autoregressive;
 use super::local_level::LocalLevel;
-use super::noise::Autoregressive;
+
 use crate::statistics::dot;
 
 /// Noise of one output.
-#[derive(Debug, Clone)]
-pub(crate) struct OutputNoise {
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutputNoise {
     /// The walk of the sensor, where there is one.
     level: Option<LocalLevel>,
     /// What it leaves.
-    rest: Autoregressive,
+    pub(crate) rest: Autoregressive,
 }
 
 impl OutputNoise {
@@ -41,6 +42,41 @@ impl OutputNoise {
         let probable =
             |noise: &Self| noise.log_likelihood(&noise.whiten(r, stretches), stretches, count);
         if probable(&with) > probable(&without) { with } else { without }
+    }
+
+    /// The most probable noise behind a series whose stretches are its runs of finite values, at the variance that
+    /// suits it best.
+    pub fn of(series: &[f64]) -> Self {
+        let (known, runs) = runs(series);
+        let count = samples(&runs);
+        let noise = Self::estimate(&known, &runs, count);
+        let white = noise.whiten(&known, &runs);
+        let variance = dot(&white, &white) / count.max(1.0);
+        Self { rest: noise.rest.scaled(variance), ..noise }
+    }
+
+    /// How many numbers it has.
+    pub fn numbers(&self) -> usize {
+        self.rest.order() + 1 + usize::from(self.level.is_some())
+    }
+
+    /// What the past does not foretell of a series, in units of its standard deviation, not a number where the
+    /// series is none.
+    pub fn whitened(&self, series: &[f64]) -> Vec<f64> {
+        let (known, runs) = runs(series);
+        let mut white = self.whiten(&known, &runs);
+        let unknown = white.iter_mut().zip(series).filter(|(_, x)| !x.is_finite());
+        unknown.for_each(|(w, _)| *w = f64::NAN);
+        white
+    }
+
+    /// Logarithm of the density of a series whose stretches are its runs of finite values.
+    pub fn log_density(&self, series: &[f64]) -> f64 {
+        let (known, runs) = runs(series);
+        let count = samples(&runs);
+        let white = self.whiten(&known, &runs);
+        let each = count * std::f64::consts::TAU.ln();
+        -0.5 * (each + self.log_determinant(&runs, count) + dot(&white, &white))
     }
 
     /// Whether a sample says something of the next.
@@ -78,14 +114,38 @@ impl OutputNoise {
     }
 
     /// Logarithm of the likelihood of a residual that [`Self::whiten`] made white, but for a constant,
-    /// at the variance that suits it best; ln(N) / 2 is paid for each number.
+    /// at the variance that suits it best; ln(N) / 2 is paid for each number but that.
     pub fn log_likelihood(&self, white: &[f64], stretches: &[Range<usize>], count: f64) -> f64 {
-        let of_level = self
-            .level
-            .as_ref()
-            .map_or(0.0, |level| level.log_determinant(stretches, count) + count.max(1.0).ln());
-        self.rest.log_likelihood(white, stretches, count) - 0.5 * of_level
+        let n = count.max(1.0);
+        let variance = (dot(white, white) / n).max(1e-300);
+        let spent = (self.numbers() - 1) as f64 * n.ln();
+        -0.5 * (n * variance.ln() + self.log_determinant(stretches, n) + spent)
     }
+
+    /// Sum of the logarithms of the variances of all predictions of `count` known samples.
+    fn log_determinant(&self, stretches: &[Range<usize>], count: f64) -> f64 {
+        let of_level = self.level.as_ref().map(|level| level.log_determinant(stretches, count));
+        self.rest.log_determinant(stretches, count) + of_level.unwrap_or(0.0)
+    }
+}
+
+/// A series with 0 where it is not finite, and its runs of finite values.
+fn runs(series: &[f64]) -> (Vec<f64>, Vec<Range<usize>>) {
+    let known = series.iter().map(|x| if x.is_finite() { *x } else { 0.0 }).collect();
+    let mut at = 0;
+    let mut all = vec![];
+    for run in series.chunk_by(|a, b| a.is_finite() == b.is_finite()) {
+        if run[0].is_finite() {
+            all.push(at..at + run.len());
+        }
+        at += run.len();
+    }
+    (known, all)
+}
+
+/// Samples of stretches.
+fn samples(stretches: &[Range<usize>]) -> f64 {
+    stretches.iter().map(|s| s.len() as f64).sum()
 }
 
 #[cfg(test)]
@@ -122,5 +182,19 @@ mod tests {
             assert!(back.iter().zip(&walk).all(|(a, b)| (a - b).abs() < 1e-9));
             assert!(OutputNoise::estimate(&fade, &all, 4000.0).level.is_none(), "{seed}");
         }
+    }
+    #[test]
+    fn a_gap_begins_anew_and_the_density_is_that_of_the_parts() {
+        let [_, mut fade] = walk_and_fade(400, 3);
+        fade[150] = f64::NAN;
+        let noise = OutputNoise::of(&fade);
+        let white = noise.whitened(&fade);
+        assert!(white[150].is_nan());
+        assert_eq!(white.iter().filter(|w| w.is_finite()).count(), 399);
+        let parts = noise.log_density(&fade[..150]) + noise.log_density(&fade[151..]);
+        assert!((noise.log_density(&fade) - parts).abs() < 1e-9);
+        let square: f64 = white.iter().filter(|w| w.is_finite()).map(|w| w * w).sum();
+        assert!((square / 399.0 - 1.0).abs() < 1e-9);
+        assert_eq!(OutputNoise::of(&[f64::NAN; 3]).numbers(), 1);
     }
 }
