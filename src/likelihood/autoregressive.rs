@@ -68,6 +68,11 @@ impl Autoregressive {
         self.predictors.len() - 1
     }
 
+    /// Standard deviation of the noise itself.
+    pub fn spread(&self) -> f64 {
+        self.variances[0].sqrt()
+    }
+
     /// Standard deviation of what the whole past does not foretell.
     pub fn deviation(&self) -> f64 {
         self.variances[self.order()].sqrt()

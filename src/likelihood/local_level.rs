@@ -8,10 +8,13 @@
 //! w[t] = r[t] - a[t],  a[t+1] = a[t] + K[t] w[t],  K = P/(P + 1),  P[t+1] = K[t] + q,  P[0] = n q,
 //! ```
 //!
-//! var(w[t]) = v (P[t] + 1). It is integrated moving-average noise, ARIMA(0,1,1), with a moving average near 1 where the
+//! var(w[t]) = v (P[t] + 1). Its score at q = 0 is the sum of squared partial sums, sum S[t]^2 / (n^2 v), which white noise
+//! has as the integral of a squared Brownian motion (Nyblom and Makelainen, JASA 78, 1983). It is integrated moving-average noise, ARIMA(0,1,1), with a moving average near 1 where the
 //! steps are small, which no autoregressive model of low order is.
 
 use std::ops::Range;
+
+use crate::statistics::dot;
 
 /// Values of q that are looked at in a pass, and passes, each about the best one of the pass before.
 const VALUES: usize = 8;
@@ -20,6 +23,8 @@ const PASSES: usize = 3;
 const LARGEST: f64 = 4.0;
 /// Change of a gain from sample to sample at which it has settled, as a share.
 const SETTLED: f64 = 1e-6;
+/// What the score of white noise exceeds once in 20 times: no walk gains what its number costs below.
+const SCORE: f64 = 1.656;
 
 /// A walk beside white noise, by the gains of its predictor.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +53,20 @@ impl LocalLevel {
         let last = deviations[deviations.len() - 1];
         deviations.iter_mut().for_each(|s| *s /= last);
         Self { gains, deviations }
+    }
+
+    /// Whether there may be a walk in a residual that is white by its neighbours.
+    pub fn is_possible(r: &[f64], stretches: &[Range<usize>], count: f64) -> bool {
+        let (mut squares, mut lengths) = (0.0, 0.0);
+        for s in stretches {
+            let mut sum = 0.0;
+            for x in &r[s.clone()] {
+                sum += x;
+                squares += sum * sum;
+            }
+            lengths += (s.len() as f64).powi(2);
+        }
+        squares > SCORE * lengths * dot(r, r) / count.max(1.0)
     }
 
     /// The most probable walk behind a residual.
@@ -102,10 +121,15 @@ impl LocalLevel {
         }
     }
 
+    /// The gain that stays: the deviation of a step over that of what is not foretold.
+    pub fn gain(&self) -> f64 {
+        self.gains[self.gains.len() - 1]
+    }
+
     /// The gain that stays, and gains and deviations before.
     fn parts(&self) -> (f64, Vec<(f64, f64)>) {
         let both = self.gains.iter().copied().zip(self.deviations.iter().copied());
-        (self.gains[self.gains.len() - 1], both.collect())
+        (self.gain(), both.collect())
     }
 
     /// Sum of the logarithms of the variances of `count` known samples, that of the last being 1.
@@ -140,7 +164,7 @@ fn log_likelihoods(
                 squares[i] += (left / walk.deviations[at]).powi(2);
             }
         }
-        let gains: [f64; VALUES] = std::array::from_fn(|i| walks[i].parts().0);
+        let gains: [f64; VALUES] = std::array::from_fn(|i| walks[i].gain());
         for x in x.iter().skip(settled) {
             for i in 0..VALUES {
                 let left = x - levels[i];
@@ -161,7 +185,6 @@ fn log_likelihoods(
 mod tests {
     use super::*;
     use crate::data::Random;
-    use crate::statistics::dot;
 
     fn wandering(n: usize, q: f64, seed: u64) -> Vec<f64> {
         let mut random = Random::new(seed);
@@ -181,8 +204,7 @@ mod tests {
         let walk = LocalLevel::with(q, 5);
         let mut white = vec![0.0; 9];
         walk.whiten(&r, &stretches, &mut white);
-        let last =
-            walk.gains[walk.gains.len() - 1] / (1.0 - walk.gains[walk.gains.len() - 1]) + 1.0;
+        let last = 1.0 / (1.0 - walk.gain());
         let own =
             walk.log_determinant(&stretches, 9.0) + 9.0 * last.ln() + dot(&white, &white) / last;
         let mut exact = 0.0;
@@ -197,12 +219,24 @@ mod tests {
     }
 
     #[test]
+    fn a_walk_too_slow_for_its_neighbours_is_possible_and_white_noise_seldom_has_one() {
+        let all = [0..4000];
+        let possible = |r: &[f64]| LocalLevel::is_possible(r, &all, 4000.0);
+        let some = (0..200).filter(|&seed| possible(&wandering(4000, 0.0, seed))).count();
+        assert!((2..=20).contains(&some), "{some}");
+        let off: Vec<f64> = wandering(4000, 0.0, 1).into_iter().map(|x| x + 0.1).collect();
+        assert!(possible(&off));
+        let seen = (0..50).filter(|&seed| possible(&wandering(4000, 1e-5, seed))).count();
+        assert!(seen >= 40, "{seen}");
+    }
+
+    #[test]
     fn a_known_walk_is_found_and_made_white() {
         for q in [1e-4, 1e-2, 1.0] {
             let (r, all) = (wandering(20_000, q, 5), [0..20_000]);
             let walk = LocalLevel::estimate(&r, &all, 20_000.0);
-            let of = |q: f64| LocalLevel::with(q, 20_000).parts().0;
-            let gain = walk.parts().0;
+            let of = |q: f64| LocalLevel::with(q, 20_000).gain();
+            let gain = walk.gain();
             assert!((gain / of(q) - 1.0).abs() < 0.2, "{q} {gain}");
             let mut white = vec![0.0; r.len()];
             walk.whiten(&r, &all, &mut white);

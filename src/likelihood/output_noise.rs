@@ -30,8 +30,7 @@ impl OutputNoise {
     /// `count` are known.
     pub fn estimate(r: &[f64], stretches: &[Range<usize>], count: f64) -> Self {
         let without = Self { level: None, rest: Autoregressive::estimate(r, stretches, count) };
-        // a walk leaves neighbours alike
-        if without.rest.order() == 0 {
+        if without.rest.order() == 0 && !LocalLevel::is_possible(r, stretches, count) {
             return without;
         }
         let level = LocalLevel::estimate(r, stretches, count);
@@ -77,6 +76,11 @@ impl OutputNoise {
         let white = self.whiten(&known, &runs);
         let each = count * std::f64::consts::TAU.ln();
         -0.5 * (each + self.log_determinant(&runs, count) + dot(&white, &white))
+    }
+
+    /// Standard deviation of the steps of the walk from sample to sample; `None` without one.
+    pub fn steps(&self) -> Option<f64> {
+        self.level.as_ref().map(|level| level.gain() * self.rest.spread())
     }
 
     /// Whether a sample says something of the next.

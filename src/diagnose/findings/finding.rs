@@ -145,6 +145,9 @@ pub struct Left {
     pub white: bool,
     /// Score of that test: about normal where it is white.
     pub score: f64,
+    /// Where a random walk beside noise is its most probable kind, as of a sensor that wanders: the standard
+    /// deviation of the walk's steps from sample to sample, in the output's unit.
+    pub wanders_by: Option<f64>,
 }
 
 /// How much was recorded.

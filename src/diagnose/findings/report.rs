@@ -17,6 +17,7 @@ use crate::fit::finished::Finished;
 use crate::fit::hypothesis::{Moved, Track};
 use crate::fit::problem::{Grain, Model, Part};
 use crate::fit::refit::{Refit, Stop};
+use crate::likelihood::OutputNoise;
 use crate::prepare::input_dependence::DEPENDS;
 use crate::statistics::{rms, whiteness};
 use crate::validate::false_discovery::false_discovery;
@@ -157,7 +158,9 @@ impl Context<'_, '_> {
             let score = whiteness(&off);
             let noise = floors.get(&signal.name).map(|floor| floor.std).filter(|std| *std > 0.0);
             let ratio_to_noise = noise.map(|std| rms(&off) / std);
-            (signal.name.clone(), Left { ratio_to_noise, white: score < WHITE, score })
+            let white = score < WHITE;
+            let wanders_by = OutputNoise::of(&off).steps().filter(|_| !white);
+            (signal.name.clone(), Left { ratio_to_noise, white, score, wanders_by })
         });
         left.collect()
     }

@@ -182,3 +182,7 @@ fn left(system: &System, record: &Record) -> Result<Vec<Vec<f64>>, EvaluateError
     let all = measured.iter().zip(&run.outputs);
     Ok(all.filter_map(|(y, (_, run))| Some(off(y.as_ref()?, run))).collect())
 }
+
+#[cfg(test)]
+#[path = "since_tests.rs"]
+mod tests;

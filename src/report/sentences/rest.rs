@@ -113,7 +113,7 @@ pub fn all_left(finding: &Finding) -> Vec<String> {
     let is_disturbed = finding.notes.iter().any(|note| matches!(note, Note::Inside { .. }));
     let one = |(name, of): (&String, &Left)| match of.ratio_to_noise {
         Some(ratio) if is_disturbed => left_by_disturbance(name, ratio),
-        _ => left(name, of),
+        _ => left(name, of, finding.unit(name)),
     };
     finding.left.iter().map(one).collect()
 }
@@ -128,10 +128,16 @@ pub(super) fn left_by_disturbance(name: &str, ratio: f64) -> String {
 }
 
 /// `What is left of angle is 1.03 times the noise, and white.`
-pub(super) fn left(name: &str, left: &Left) -> String {
-    let colour = match left.white {
-        true => "white: a sample says nothing of the next".into(),
-        false => format!("coloured (score {:.0}): a sample predicts the next", left.score),
+pub(super) fn left(name: &str, left: &Left, unit: &str) -> String {
+    let colour = match (left.white, left.wanders_by) {
+        (true, _) => "white: a sample says nothing of the next".into(),
+        (false, None) => format!("coloured (score {:.0}): a sample predicts the next", left.score),
+        (false, Some(step)) => format!(
+            "coloured (score {:.0}), as of a sensor that wanders by {}{} from sample to sample",
+            left.score,
+            rough(step),
+            spaced(unit)
+        ),
     };
     match left.ratio_to_noise {
         Some(ratio) => format!("What is left of {name} is {}, and {colour}.", over_noise(ratio)),

@@ -220,21 +220,20 @@ fn faults_of_columns() {
 
 #[test]
 fn what_is_left_and_what_was_supposed() {
-    let of = |ratio_to_noise, white| rest::left("y", &Left { ratio_to_noise, white, score: 826.4 });
+    let of = |ratio_to_noise, white, wanders_by| {
+        rest::left("y", &Left { ratio_to_noise, white, score: 826.4, wanders_by }, "V")
+    };
     assert_eq!(
-        of(Some(1.03), true),
+        of(Some(1.03), true, None),
         "What is left of y is 1.0 times the noise, and white: a sample says nothing of the next."
     );
-    assert!(of(Some(32.7), false).contains("33 times the noise, and coloured (score 826)"));
-    assert!(
-        of(Some(0.68), true).starts_with("What is left of y is no more than the noise, and white")
-    );
-    assert!(of(None, false).contains("the noise is not known"));
+    assert!(of(Some(32.7), false, None).contains("33 times the noise, and coloured (score 826)"));
+    assert!(of(Some(0.68), true, None).contains("y is no more than the noise, and white"));
+    assert!(of(None, false, None).contains("the noise is not known"));
+    let wanders = of(Some(1.0), false, Some(0.01));
+    assert!(wanders.contains("as of a sensor that wanders by 0.010 V from sample"), "{wanders}");
     let disturbed = rest::left_by_disturbance("y", 6.94);
-    assert!(
-        disturbed.starts_with("A simulation of y is off by 6.9 times the noise: "),
-        "{disturbed}"
-    );
+    assert!(disturbed.contains("A simulation of y is off by 6.9 times the noise: "), "{disturbed}");
     let facts = RecordFacts { records: 1, samples: 400, sampling_time: 0.1, test_samples: None };
     assert!(record(&facts).starts_with("400 samples of one record, 0.1000 s apart; "));
 }
@@ -264,7 +263,7 @@ fn what_is_fixed_is_named_and_may_be_the_cause() {
 
 #[test]
 fn data_at_fault_do_not_hide_that_the_model_is_wrong_too() {
-    let left = |white| Left { ratio_to_noise: Some(5.0), white, score: 1756.0 };
+    let left = |white| Left { ratio_to_noise: Some(5.0), white, score: 1756.0, wanders_by: None };
     let (open, white) = ([left(true), left(false)], [left(true)]);
     let text = rest::not_only_data(Verdict::DataFault, open.iter()).unwrap();
     assert!(text.contains("that is not all"), "{text}");
