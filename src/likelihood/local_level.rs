@@ -8,9 +8,10 @@
 //! w[t] = r[t] - a[t],  a[t+1] = a[t] + K[t] w[t],  K = P/(P + 1),  P[t+1] = K[t] + q,  P[0] = n q,
 //! ```
 //!
-//! var(w[t]) = v (P[t] + 1). Its score at q = 0 is the sum of squared partial sums, sum S[t]^2 / (n^2 v), which white noise
-//! has as the integral of a squared Brownian motion (Nyblom and Makelainen, JASA 78, 1983). It is integrated moving-average noise, ARIMA(0,1,1), with a moving average near 1 where the
-//! steps are small, which no autoregressive model of low order is.
+//! var(w[t]) = v (P[t] + 1). This is integrated moving-average noise, ARIMA(0,1,1), of a moving average near 1 where
+//! the steps are small, which no autoregressive model of low order is. The score of a walk, at q = 0, is
+//! sum S[t]^2 / (n^2 v), S the partial sums, of white noise distributed as the integral of a squared Brownian motion
+//! (Nyblom and Makelainen, JASA 78, 1983).
 
 use std::ops::Range;
 
@@ -87,36 +88,31 @@ impl LocalLevel {
 
     /// What the past does not foretell, in units of the deviation that it has in the end, but for a factor.
     pub fn whiten(&self, r: &[f64], stretches: &[Range<usize>], out: &mut [f64]) {
-        let (last, first) = self.parts();
+        let last = self.gain();
         for s in stretches {
             let mut level = 0.0;
             let (x, out) = (&r[s.clone()], &mut out[s.clone()]);
-            for (t, (x, out)) in x.iter().zip(out).enumerate() {
-                let left = x - level;
-                match first.get(t) {
-                    Some((gain, deviation)) => {
-                        level += gain * left;
-                        *out = left / deviation;
-                    }
-                    None => {
-                        level += last * left;
-                        *out = left;
-                    }
-                }
+            let settled = x.len().min(self.gains.len());
+            for t in 0..settled {
+                let left = x[t] - level;
+                level += self.gains[t] * left;
+                out[t] = left / self.deviations[t];
+            }
+            for (x, out) in x[settled..].iter().zip(&mut out[settled..]) {
+                *out = x - level;
+                level += last * *out;
             }
         }
     }
 
     /// The inverse of [`Self::whiten`], in place.
     pub fn colour(&self, series: &mut [f64], stretches: &[Range<usize>]) {
-        let (last, first) = self.parts();
         for s in stretches {
             let mut level = 0.0;
             for (t, x) in series[s.clone()].iter_mut().enumerate() {
-                let (gain, deviation) = first.get(t).copied().unwrap_or((last, 1.0));
-                let left = *x * deviation;
+                let left = *x * self.deviations.get(t).unwrap_or(&1.0);
                 *x = left + level;
-                level += gain * left;
+                level += self.gains.get(t).unwrap_or(&self.gain()) * left;
             }
         }
     }
@@ -124,12 +120,6 @@ impl LocalLevel {
     /// The gain that stays: the deviation of a step over that of what is not foretold.
     pub fn gain(&self) -> f64 {
         self.gains[self.gains.len() - 1]
-    }
-
-    /// The gain that stays, and gains and deviations before.
-    fn parts(&self) -> (f64, Vec<(f64, f64)>) {
-        let both = self.gains.iter().copied().zip(self.deviations.iter().copied());
-        (self.gain(), both.collect())
     }
 
     /// Sum of the logarithms of the variances of `count` known samples, that of the last being 1.
@@ -143,6 +133,9 @@ impl LocalLevel {
 }
 
 /// Logarithms of the likelihoods of walks at the variances of the noise that suit them best, but for a constant.
+///
+/// The predictor of the gain that stays leaves w = w0 + m (1 - K)^t, m being what the level of the first sample has
+/// beyond P, the variance that stays: var(m) = (n q - P) v, |w0|^2 by the formula of Sherman and Morrison.
 fn log_likelihoods(
     q: [f64; VALUES],
     n: usize,
@@ -150,32 +143,33 @@ fn log_likelihoods(
     stretches: &[Range<usize>],
     count: f64,
 ) -> [f64; VALUES] {
-    let walks = q.map(|q| LocalLevel::with(q, n));
-    let settled = walks.iter().map(|walk| walk.gains.len()).max().unwrap_or(0);
-    let mut squares = [0.0; VALUES];
+    let p = q.map(|q| 0.5 * (q + (q * q + 4.0 * q).sqrt()));
+    let gains = p.map(|p| p / (p + 1.0));
+    let (mut squares, mut logs) = ([0.0; VALUES], [0.0; VALUES]);
     for s in stretches {
         let mut levels = [0.0; VALUES];
-        let x = &r[s.clone()];
-        for (t, x) in x.iter().enumerate().take(settled) {
-            for (i, walk) in walks.iter().enumerate() {
-                let at = t.min(walk.gains.len() - 1);
-                let left = x - levels[i];
-                levels[i] += walk.gains[at] * left;
-                squares[i] += (left / walk.deviations[at]).powi(2);
-            }
-        }
-        let gains: [f64; VALUES] = std::array::from_fn(|i| walks[i].gain());
-        for x in x.iter().skip(settled) {
+        let mut powers = [1.0; VALUES];
+        let (mut own, mut along) = ([0.0; VALUES], [0.0; VALUES]);
+        for x in &r[s.clone()] {
             for i in 0..VALUES {
                 let left = x - levels[i];
                 levels[i] += gains[i] * left;
-                squares[i] += left * left;
+                own[i] += left * left;
+                along[i] += left * powers[i];
+                powers[i] *= 1.0 - gains[i];
             }
         }
+        for i in 0..VALUES {
+            let (f, beyond) = (p[i] + 1.0, (n as f64 * q[i] - p[i]).max(0.0));
+            let fading = (1.0 - powers[i] * powers[i]) / (1.0 - (1.0 - gains[i]).powi(2));
+            squares[i] += (own[i] - beyond * along[i].powi(2) / (f + beyond * fading)) / f;
+            logs[i] += s.len() as f64 * f.ln() + (beyond * fading / f).ln_1p();
+        }
     }
+    let samples: f64 = stretches.iter().map(|s| s.len() as f64).sum();
     let of = |i: usize| {
         let variance = (squares[i] / count.max(1.0)).max(1e-300);
-        -0.5 * (count * variance.ln() + walks[i].log_determinant(stretches, count))
+        -0.5 * count * (variance.ln() + logs[i] / samples.max(1.0))
     };
     std::array::from_fn(of)
 }
@@ -216,6 +210,22 @@ mod tests {
             exact += covariance.determinant().ln() + x.dot(&covariance.lu().solve(&x).unwrap());
         }
         assert!((own - exact).abs() < 1e-9, "{own} {exact}");
+    }
+
+    #[test]
+    fn the_likelihoods_that_are_looked_at_are_those_of_the_filter() {
+        let stretches = [0..300, 300..500];
+        let r = wandering(500, 0.01, 7);
+        let q: [f64; VALUES] = std::array::from_fn(|i| 1e-5 * 6f64.powi(i as i32));
+        let found = log_likelihoods(q, 300, &r, &stretches, 500.0);
+        for (q, found) in q.into_iter().zip(found) {
+            let walk = LocalLevel::with(q, 300);
+            let mut white = vec![0.0; 500];
+            walk.whiten(&r, &stretches, &mut white);
+            let of = 500.0 * (dot(&white, &white) / 500.0).ln();
+            let own = -0.5 * (of + walk.log_determinant(&stretches, 500.0));
+            assert!((own - found).abs() < 0.05, "{q} {own} {found}");
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod plan;
 mod rest;
 mod size;
 mod stated;
+mod withdrawn;
 
 #[cfg(test)]
 mod tests;
@@ -27,9 +28,9 @@ pub use self::{
     rest::details,
     rest::{
         all_left, fit, gain, held, look_alikes, record, rmse, shares, unweighed, why_less_sure,
-        withdrawn,
     },
     size::formula,
+    withdrawn::withdrawn,
 };
 
 use crate::diagnose::{Cause, Finding, Verdict};

@@ -1,9 +1,9 @@
 //! What stands below the causes: look-alikes, the gain, what is left, what was supposed.
 
 use super::cause::phrase;
+use super::withdrawn::all_withdrawn;
 use crate::diagnose::{
-    Alternative, Cause, ColumnFault, Finding, Left, NotFound, Note, RecordFacts, Unweighed,
-    Verdict, Withdrawn,
+    Alternative, Cause, ColumnFault, Finding, Left, NotFound, Note, RecordFacts, Unweighed, Verdict,
 };
 use crate::digits::{number, percent, rough, spaced};
 use crate::evaluate::Metrics;
@@ -17,7 +17,7 @@ const RARE: f64 = 0.05;
 pub fn details(finding: &Finding) -> Vec<String> {
     let mut lines: Vec<String> =
         finding.causes.iter().filter_map(|cause| look_alikes(finding, cause)).collect();
-    lines.extend(finding.withdrawn.iter().map(withdrawn));
+    lines.extend(all_withdrawn(&finding.withdrawn));
     lines.extend(finding.before.test.iter().filter_map(|(name, before)| {
         let after = finding.after.test.get(name)?;
         Some(rmse(finding, name, before, after))
@@ -203,27 +203,6 @@ pub(super) fn supposed_right(held: &[String]) -> Option<String> {
              told as something else."
         )
     })
-}
-
-/// A cause that data refute which were not fitted, and what the test data say to that.
-pub fn withdrawn(withdrawn: &Withdrawn) -> String {
-    let ratio = withdrawn.test_rmse_ratio;
-    let (place, ratio_said) = (super::place_of(&withdrawn.cause), number(ratio, None));
-    if withdrawn.by_test {
-        let how = match ratio.is_finite() {
-            true => format!("RMSE times {ratio_said} with it"),
-            false => "with it the simulation leaves all bounds".into(),
-        };
-        return format!(
-            "Withdrawn: {place}. The test data refute it: the extended model with it predicts them worse \
-             than the model that was handed in ({how}), and does not have it."
-        );
-    }
-    let test = if ratio > 1.0 { "and so do the test data" } else { "though the test data do not" };
-    format!(
-        "Withdrawn: {place}. The part of the records that was not fitted speaks against it, {test} (RMSE \
-         times {ratio_said} with it); the extended model does not have it."
-    )
 }
 
 /// Why there are no causes, how good the model is, and what this record could not have shown.
