@@ -9,7 +9,7 @@ use std::ops::Range;
 use crate::statistics::{dot, levinson};
 
 /// Highest order, and samples that each coefficient needs.
-const ORDER: usize = 16;
+pub(crate) const ORDER: usize = 16;
 const SAMPLES: f64 = 10.0;
 
 /// Noise of one output.

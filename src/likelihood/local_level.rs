@@ -15,13 +15,15 @@
 
 use std::ops::Range;
 
+use super::autoregressive::ORDER;
 use crate::statistics::dot;
 
 /// Values of q that are looked at in a pass, and passes, each about the best one of the pass before.
 const VALUES: usize = 8;
 const PASSES: usize = 3;
-/// The largest q: nearly all of what is left is the walk.
-const LARGEST: f64 = 4.0;
+/// The largest q: the steps of a walk that add up to the noise within the samples that an autoregressive model sees
+/// are that model's matter.
+const LARGEST: f64 = 1.0 / (ORDER * ORDER) as f64;
 /// Change of a gain from sample to sample at which it has settled, as a share.
 const SETTLED: f64 = 1e-6;
 /// What the score of white noise exceeds once in 20 times: no walk gains what its number costs below.
@@ -242,7 +244,7 @@ mod tests {
 
     #[test]
     fn a_known_walk_is_found_and_made_white() {
-        for q in [1e-4, 1e-2, 1.0] {
+        for q in [1e-5, 1e-4, 1e-3] {
             let (r, all) = (wandering(20_000, q, 5), [0..20_000]);
             let walk = LocalLevel::estimate(&r, &all, 20_000.0);
             let of = |q: f64| LocalLevel::with(q, 20_000).gain();

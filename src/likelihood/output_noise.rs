@@ -1,8 +1,9 @@
-//! The noise of one output: autoregressive (`super::autoregressive`), or beside a sensor that wanders
+//! The noise of one output: autoregressive (`super::autoregressive`), or white beside a sensor that wanders
 //! (`super::local_level`), whichever is the more probable.
 //!
-//! W = W_ar W_level: what the walk's predictor leaves has autoregressive noise of its own. q, the size of the walk's
-//! steps, is paid for as a coefficient is (Schwarz, Annals of Statistics 6, 1978). Stretches know nothing of one another.
+//! q, the size of the walk's steps, is paid for as a coefficient is (Schwarz, Annals of Statistics 6, 1978). A walk
+//! beside coloured noise is not asked for: what a model still lacks looks like both, and would be taken for noise.
+//! Stretches know nothing of one another.
 
 use std::ops::Range;
 
@@ -36,8 +37,7 @@ impl OutputNoise {
         let level = LocalLevel::estimate(r, stretches, count);
         let mut left = vec![0.0; r.len()];
         level.whiten(r, stretches, &mut left);
-        let rest = Autoregressive::estimate(&left, stretches, count);
-        let with = Self { level: Some(level), rest };
+        let with = Self { level: Some(level), ..Self::white(&left, count) };
         let probable =
             |noise: &Self| noise.log_likelihood(&noise.whiten(r, stretches), stretches, count);
         if probable(&with) > probable(&without) { with } else { without }
