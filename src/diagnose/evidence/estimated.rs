@@ -1,6 +1,6 @@
 //! The disturbance that suits a residual best: autoregressive noise per output over stretches of samples,
-//! with or without a sensor that wanders, of one variance or one that follows the signal or time, of normal or of t innovations; each is kept
-//! where it is the more probable, its own numbers paid for.
+//! or white noise beside a sensor that wanders, of one variance or one that follows the signal or time, of
+//! normal or of t innovations; each is kept where it is the more probable, its own numbers paid for.
 
 use std::sync::Arc;
 
