@@ -173,7 +173,7 @@ mod tests {
     }
 
     #[test]
-    fn a_walk_is_told_from_a_process_that_fades() {
+    fn a_walk_is_distinguished_from_a_process_that_fades() {
         for seed in 0..10 {
             let all = [0..4000];
             let [walk, fade] = walk_and_fade(4000, seed);

@@ -53,7 +53,7 @@ mod tests {
     use crate::diagnose::Cause;
 
     #[test]
-    fn many_are_told_in_one_sentence() {
+    fn many_are_listed_in_one_sentence() {
         let named = |into: &str| Cause { into: into.into(), ..Cause::default() };
         let one = |i: usize| Withdrawn {
             cause: named(&format!("f{i}")),
