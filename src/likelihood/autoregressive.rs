@@ -57,6 +57,15 @@ impl Autoregressive {
         self
     }
 
+    /// Noise of one coefficient, that leaves this variance.
+    #[cfg(test)]
+    pub fn first_order(a: f64, variance: f64) -> Self {
+        Self {
+            predictors: vec![vec![], vec![a]],
+            variances: vec![variance / (1.0 - a * a), variance],
+        }
+    }
+
     /// Coefficients of the predictor, the latest sample first.
     #[cfg(test)]
     pub fn coefficients(&self) -> &[f64] {
@@ -115,9 +124,13 @@ impl Autoregressive {
             let first: f64 = self.variances.iter().take(order.min(s.len())).map(|v| v.ln()).sum();
             first + s.len().saturating_sub(order) as f64 * self.variances[order].ln()
         };
-        let samples: f64 = stretches.iter().map(|s| s.len() as f64).sum();
-        stretches.iter().map(one).sum::<f64>() * count / samples.max(1.0)
+        stretches.iter().map(one).sum::<f64>() * count / samples(stretches).max(1.0)
     }
+}
+
+/// Samples of stretches.
+pub(crate) fn samples(stretches: &[Range<usize>]) -> f64 {
+    stretches.iter().map(|s| s.len() as f64).sum()
 }
 
 /// What a predictor says of sample `t` of `x`.
@@ -169,10 +182,7 @@ mod tests {
     fn the_likelihood_of_a_first_order_process_is_that_of_its_covariance() {
         // stationary: cov(t, s) = v a^|t-s| / (1 - a^2); two stretches know nothing of each other
         let (a, v) = (0.7, 0.04);
-        let noise = Autoregressive {
-            predictors: vec![vec![], vec![a]],
-            variances: vec![v / (1.0 - a * a), v],
-        };
+        let noise = Autoregressive::first_order(a, v);
         let mut random = Random::new(1);
         let r: Vec<f64> = (0..7).map(|_| 0.2 * random.normal()).collect();
         let stretches = [0..4, 4..7];

@@ -15,7 +15,7 @@
 
 use std::ops::Range;
 
-use super::autoregressive::ORDER;
+use super::autoregressive::{ORDER, samples};
 use crate::statistics::dot;
 
 /// Values of q that are looked at in a pass, and passes, each about the best one of the pass before.
@@ -129,8 +129,7 @@ impl LocalLevel {
         let one = |s: &Range<usize>| -> f64 {
             self.deviations.iter().take(s.len()).map(|s| 2.0 * s.ln()).sum()
         };
-        let samples: f64 = stretches.iter().map(|s| s.len() as f64).sum();
-        stretches.iter().map(one).sum::<f64>() * count / samples.max(1.0)
+        stretches.iter().map(one).sum::<f64>() * count / samples(stretches).max(1.0)
     }
 }
 
@@ -168,7 +167,7 @@ fn log_likelihoods(
             logs[i] += s.len() as f64 * f.ln() + (beyond * fading / f).ln_1p();
         }
     }
-    let samples: f64 = stretches.iter().map(|s| s.len() as f64).sum();
+    let samples = samples(stretches);
     let of = |i: usize| {
         let variance = (squares[i] / count.max(1.0)).max(1e-300);
         -0.5 * count * (variance.ln() + logs[i] / samples.max(1.0))

@@ -7,7 +7,7 @@
 
 use std::ops::Range;
 
-use super::autoregressive::Autoregressive;
+use super::autoregressive::{Autoregressive, samples};
 use super::local_level::LocalLevel;
 
 use crate::statistics::dot;
@@ -147,11 +147,6 @@ fn runs(series: &[f64]) -> (Vec<f64>, Vec<Range<usize>>) {
     (known, all)
 }
 
-/// Samples of stretches.
-fn samples(stretches: &[Range<usize>]) -> f64 {
-    stretches.iter().map(|s| s.len() as f64).sum()
-}
-
 #[cfg(test)]
 #[allow(clippy::single_range_in_vec_init)] // a record of one segment
 mod tests {
@@ -187,6 +182,45 @@ mod tests {
             assert!(OutputNoise::estimate(&fade, &all, 4000.0).level.is_none(), "{seed}");
         }
     }
+
+    #[test]
+    fn a_known_process_is_whitened() {
+        // e[k] = 1.2 e[k-1] - 0.5 e[k-2] + eps
+        let mut random = Random::new(3);
+        let mut e = vec![0.0, 0.0];
+        for k in 2..20_200 {
+            e.push(1.2 * e[k - 1] - 0.5 * e[k - 2] + 0.3 * random.normal());
+        }
+        let e = e.split_off(200);
+        let noise = OutputNoise::of(&e);
+        assert!(noise.level.is_none());
+        assert_eq!(noise.rest.order(), 2);
+        for (found, known) in noise.rest.coefficients().iter().zip([1.2, -0.5]) {
+            assert!((found - known).abs() < 0.02, "{found} {known}");
+        }
+        assert!((noise.deviation().powi(2) - 0.09).abs() < 0.003, "{}", noise.deviation());
+        let white = noise.whitened(&e);
+        let lag: f64 = white.windows(2).map(|w| w[0] * w[1]).sum::<f64>() / 20_000.0;
+        assert!(lag.abs() < 0.02);
+    }
+
+    #[test]
+    fn the_density_is_the_multivariate_normal_one() {
+        let [_, e] = walk_and_fade(12, 3);
+        let noise = OutputNoise { level: None, rest: Autoregressive::first_order(0.8, 0.09) };
+        // covariance of a process of first order: s^2 a^|i-j| / (1 - a^2)
+        let covariance = nalgebra::DMatrix::from_fn(12, 12, |i, j| {
+            0.09 / 0.36 * 0.8_f64.powi((i as i32 - j as i32).abs())
+        });
+        let root = covariance.cholesky().unwrap();
+        let off = nalgebra::DVector::from_vec(e.clone());
+        let square = off.dot(&root.solve(&off));
+        let determinant: f64 = root.l().diagonal().iter().map(|d| 2.0 * d.ln()).sum();
+        let exact = -0.5 * (12.0 * std::f64::consts::TAU.ln() + determinant + square);
+        let found = noise.log_density(&e);
+        assert!((found - exact).abs() < 1e-9, "{found} {exact}");
+    }
+
     #[test]
     fn a_gap_begins_anew_and_the_density_is_that_of_the_parts() {
         let [_, mut fade] = walk_and_fade(400, 3);
@@ -195,6 +229,8 @@ mod tests {
         let white = noise.whitened(&fade);
         assert!(white[150].is_nan());
         assert_eq!(white.iter().filter(|w| w.is_finite()).count(), 399);
+        // the first after it is a first one
+        assert!((white[151] - fade[151] / noise.rest.spread()).abs() < 1e-12);
         let parts = noise.log_density(&fade[..150]) + noise.log_density(&fade[151..]);
         assert!((noise.log_density(&fade) - parts).abs() < 1e-9);
         let square: f64 = white.iter().filter(|w| w.is_finite()).map(|w| w * w).sum();

@@ -71,7 +71,8 @@ impl Coloured {
         filter: impl Fn(&OutputNoise, &[f64], &[Range<usize>]) -> Vec<f64>,
     ) -> Vec<f64> {
         let parts = series.chunks(self.stretches.per_output.max(1)).zip(&self.noise);
-        parts.flat_map(|(x, noise)| filter(noise, x, &self.stretches.spans)).collect()
+        let filtered = parts.map(|(x, noise)| filter(noise, x, &self.stretches.spans));
+        filtered.collect::<Vec<_>>().concat()
     }
 }
 

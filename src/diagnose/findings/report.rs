@@ -159,7 +159,7 @@ impl Context<'_, '_> {
             let noise = floors.get(&signal.name).map(|floor| floor.std).filter(|std| *std > 0.0);
             let ratio_to_noise = noise.map(|std| rms(&off) / std);
             let white = score < WHITE;
-            let wanders_by = OutputNoise::of(&off).steps().filter(|_| !white);
+            let wanders_by = if white { None } else { OutputNoise::of(&off).steps() };
             (signal.name.clone(), Left { ratio_to_noise, white, score, wanders_by })
         });
         left.collect()

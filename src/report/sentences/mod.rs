@@ -33,6 +33,8 @@ pub use self::{
     withdrawn::withdrawn,
 };
 
+use std::fmt;
+
 use crate::diagnose::{Cause, Finding, Verdict};
 
 /// The sentences that come first: the causes whose size is told from none, then those whose is not;
@@ -51,6 +53,14 @@ pub fn headline(finding: &Finding) -> String {
         _ => ordered(finding).into_iter().map(cause).collect(),
     };
     lines.join("\n")
+}
+
+/// Some names of a list, so many at most, and how many more there are.
+fn names<T: fmt::Display>(all: &[T], most: usize) -> String {
+    let listed: Vec<String> = all.iter().take(most).map(ToString::to_string).collect();
+    let more = all.len().saturating_sub(most);
+    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+    format!("{}{more}", listed.join("; "))
 }
 
 /// Causes as they are told: those with a size first, in order of discovery.

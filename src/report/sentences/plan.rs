@@ -1,7 +1,6 @@
 //! What a record can see and tell apart, in sentences.
 
-use std::fmt;
-
+use super::names;
 use crate::diagnose::{Experiment, LookAlikes, Outlook, Supposed, Track, Visibility};
 use crate::digits::{number, spaced};
 
@@ -9,14 +8,6 @@ use crate::digits::{number, spaced};
 const NAMES: usize = 12;
 /// Share that free parameters leave of an effect, below which they are said to imitate it.
 const IMITATED: f64 = 0.1;
-
-/// Some names, and how many more there are.
-fn names<T: fmt::Display>(all: &[T]) -> String {
-    let listed: Vec<String> = all.iter().take(NAMES).map(ToString::to_string).collect();
-    let more = all.len().saturating_sub(NAMES);
-    let more = if more > 0 { format!("; and {more} more") } else { String::new() };
-    format!("{}{more}", listed.join("; "))
-}
 
 /// One line: the cause, its smallest size, and what parameters leave of it.
 pub fn visibility(cause: &Visibility) -> String {
@@ -58,7 +49,7 @@ pub fn experiment(of: &Experiment, [trusted, free]: [usize; 2]) -> String {
     }
     let also = match &also_shows[..] {
         [] => String::new(),
-        listed => format!("; also shows {}", names(listed)),
+        listed => format!("; also shows {}", names(listed, NAMES)),
     };
     let more = match free {
         0 => String::new(),
@@ -85,7 +76,7 @@ fn same(outlook: &Outlook) -> Option<String> {
         format!(
             "The same in the model's equations, so that no experiment with these inputs tells the \
              places apart: {}",
-            names(&all)
+            names(&all, NAMES)
         )
     })
 }
@@ -107,7 +98,7 @@ pub fn outlook(outlook: &Outlook) -> String {
             "{} of {} causes would not show, even as large as what drives their place: {}",
             hidden.len(),
             outlook.causes.len(),
-            names(hidden)
+            names(hidden, NAMES)
         )),
     }
     let imitated: Vec<String> = outlook
@@ -118,7 +109,7 @@ pub fn outlook(outlook: &Outlook) -> String {
         .map(|(c, kappa)| format!("{} ({:.1} % left)", c.cause, 100.0 * kappa))
         .collect();
     if !imitated.is_empty() {
-        lines.push(format!("Free parameters imitate: {}", names(&imitated)));
+        lines.push(format!("Free parameters imitate: {}", names(&imitated, NAMES)));
     }
     let sets = outlook.sets();
     if sets.is_empty() {
@@ -135,7 +126,7 @@ pub fn outlook(outlook: &Outlook) -> String {
                 format!("{name} tells {reported} of {pairs} pairs apart")
             }
         };
-        lines.push(format!("Look alike: {} -- {reported}", names(set)));
+        lines.push(format!("Look alike: {} -- {reported}", names(set, NAMES)));
     }
     lines.extend(same(outlook));
     let only_free = |p: &&LookAlikes| p.track == Track::ParametersFree;

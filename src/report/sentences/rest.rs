@@ -226,18 +226,16 @@ pub fn nothing(finding: &Finding) -> String {
     let unseen = finding.not_found.iter().filter(|cause| !cause.visible);
     let unseen: Vec<&NotFound> = unseen.collect();
     if !unseen.is_empty() {
-        let names = unseen.iter().take(NAMES).map(|c| {
+        let name = |c: &&NotFound| {
             let of = c.of.as_ref().map_or_else(String::new, |of| format!(" of {of}"));
             format!("{} on {}{of}", c.effect.replace('_', " "), c.into)
-        });
-        let names: Vec<String> = names.collect();
-        let more = unseen.len().saturating_sub(NAMES);
-        let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+        };
+        let all: Vec<String> = unseen.iter().map(name).collect();
         text += &format!(
-            " This record could not have shown {} of {} causes: {}{more}.",
+            " This record could not have shown {} of {} causes: {}.",
             unseen.len(),
             finding.not_found.len(),
-            names.join("; ")
+            super::names(&all, NAMES)
         );
     }
     text

@@ -15,13 +15,11 @@ pub(super) fn all_withdrawn(all: &[Withdrawn]) -> Vec<String> {
         lines.extend(by_part.into_iter().map(withdrawn));
         return lines;
     }
-    let places = by_part.iter().take(MANY).map(|w| super::place_of(&w.cause));
-    let places: Vec<String> = places.collect();
+    let places: Vec<String> = by_part.iter().map(|w| super::place_of(&w.cause)).collect();
     lines.push(format!(
-        "Withdrawn: {}; and {} more. The part of the records that was not fitted speaks against each of \
-         them; the extended model has none.",
-        places.join("; "),
-        by_part.len() - MANY
+        "Withdrawn: {}. The part of the records that was not fitted speaks against each of them; the \
+         extended model has none.",
+        super::names(&places, MANY)
     ));
     lines
 }
