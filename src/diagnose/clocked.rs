@@ -59,6 +59,9 @@ impl Judged {
     }
 }
 
+/// Records to search in, and the test record.
+type Source<'a> = (&'a [Record], Option<&'a Record>);
+
 impl Diagnosis<'_> {
     /// A record whose clock seems to be wrong: what is found, by the clock of the record or by the other,
     /// whichever is more probable. Says whether the clock is to blame.
@@ -71,6 +74,10 @@ impl Diagnosis<'_> {
     ) -> Result<(Searched, bool), DiagnoseError> {
         let mended: Vec<Record> = records.iter().map(|r| fault.mend(r)).collect();
         let mended_test = test.map(|record| fault.mend(record));
+        let both = ((records, test), (&mended[..], mended_test.as_ref()));
+        if let Some(clock) = self.sure_of_clock(both, watch)? {
+            return Ok((self.measured(clock, &mended, mended_test.as_ref(), watch)?, true));
+        }
         let machine = self.answered(records, test, self.max_causes, watch)?;
         let is_inside = machine.chosen.is_by_innovations();
         let judged = |all: &[Record]| Judged::new(&searchable(all, test), is_inside);
@@ -100,5 +107,34 @@ impl Diagnosis<'_> {
         let searched = self.measured(machine, records, test, watch)?;
         let other = (probability > LOOK_ALIKE).then(|| fault.alternative(probability));
         Ok((other.into_iter().fold(searched, Searched::or_else), false))
+    }
+
+    /// What is found by the other clock, where that clock alone leaves nothing but noise and no machine by the
+    /// clock of the record is as probable. A machine of k causes has at most the likelihood of noise and takes
+    /// k numbers and choices, so that only sets of so few causes are searched as could be.
+    fn sure_of_clock(
+        &self,
+        ((records, test), (mended, mended_test)): (Source<'_>, Source<'_>),
+        watch: &dyn Watch,
+    ) -> Result<Option<Chosen<'_>>, DiagnoseError> {
+        let noise = |of: &Chosen<'_>| of.chosen.dependence < DEPENDS && !watch.stopped();
+        if !noise(&self.answered(mended, mended_test, 0, watch)?) {
+            return Ok(None);
+        }
+        let clock = self.answered(mended, mended_test, self.max_causes, watch)?;
+        let is_inside = clock.chosen.is_by_innovations();
+        let judged = |all: &[Record], test| Judged::new(&searchable(all, test), is_inside);
+        let (by_record, by_other) = (judged(records, test), judged(mended, mended_test));
+        let (likelihood, price) = by_other.answer(&clock)?;
+        let one = by_record.numbers(1) + Choices::default().price(false);
+        let most = (1.0 + price / one) as usize;
+        if !noise(&clock) || most >= self.max_causes {
+            return Ok(None);
+        }
+        let own = by_record.readings / by_other.readings * likelihood - price - one;
+        let machine = self.answered(records, test, most, watch)?;
+        let (likelihood, price) = by_record.answer(&machine)?;
+        let bare = by_record.log_likelihood(self.system);
+        Ok((own > (likelihood - price).max(bare)).then_some(clock))
     }
 }

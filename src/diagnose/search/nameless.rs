@@ -44,9 +44,9 @@ pub(super) fn nameless(study: &mut Study<'_, '_>) {
     let hidden = |study: &Study<'_, '_>, best: &Fit| {
         let left = best.noise.whiten(&best.residual);
         let n = (left.len() / study.problem.y.len().max(1)).max(1);
-        best.noise.remembers()
-            || left.chunks(n).any(|r| whiteness(r) > COLOURED)
+        left.chunks(n).any(|r| whiteness(r) > COLOURED)
             || study.dependence(&best.model) > DEPENDS
+            || best.noise.remembers() && study.unforeseen(best) > DEPENDS
     };
     if curve || hidden(study, &best) {
         study.watch.report(0.9, "drawing free curves");
@@ -167,3 +167,7 @@ fn by_its_name(study: &mut Study<'_, '_>, base: &Fit, learned: &Fit) {
         .collect();
     study.fit_and_keep(base.free, &wishes, ITERATIONS);
 }
+
+#[cfg(test)]
+#[path = "nameless_tests.rs"]
+mod tests;

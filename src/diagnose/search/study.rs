@@ -155,6 +155,24 @@ impl<'a, 'b> Study<'a, 'b> {
         y.map_or(0.0, |y| dependence(self.problem, self.nominal, &y))
     }
 
+    /// Score that what the noise of a fit does not foresee depends on the inputs: innovations of the right
+    /// model follow from none of them (Ljung, System Identification, 1999, section 16.6).
+    pub fn unforeseen(&self, fit: &Fit) -> f64 {
+        let problem = &*self.problem;
+        let Some(mut y) = problem.simulate(&fit.model, Grain::Coarse) else { return 0.0 };
+        let residual = problem.residual(&y, Part::All);
+        let all = Stretches::new(problem, Part::All);
+        let innovations = fit.noise.over(&all, &residual).whitener.whiten(&residual);
+        let n = problem.samples(Part::All).count().max(1);
+        let foreseen = Arc::make_mut(&mut y);
+        for (o, own) in innovations.chunks(n).enumerate() {
+            for (k, e) in problem.samples(Part::All).zip(own) {
+                foreseen[o][k] = problem.y[o][k] - e;
+            }
+        }
+        dependence(problem, self.nominal, &y)
+    }
+
     /// Fits the leading ones once more, each in its own disturbance.
     pub fn polish(&mut self, within: f64) {
         for free in [false, true] {
