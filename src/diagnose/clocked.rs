@@ -62,6 +62,26 @@ impl Judged {
 /// Records to search in, and the test record.
 type Source<'a> = (&'a [Record], Option<&'a Record>);
 
+/// The same readings by the clock of the record and by the other.
+struct Clocks {
+    by_record: Judged,
+    by_other: Judged,
+    /// A shifted column has fewer readings, each of the same density.
+    same: f64,
+    /// What one name with one number takes, be it a clock or a cause.
+    one: f64,
+}
+
+impl Clocks {
+    fn new(record: Source<'_>, other: Source<'_>, is_inside: bool) -> Self {
+        let judged = |(all, test): Source<'_>| Judged::new(&searchable(all, test), is_inside);
+        let (by_record, by_other) = (judged(record), judged(other));
+        let same = by_record.readings / by_other.readings;
+        let one = by_record.numbers(1) + Choices::default().price(false);
+        Self { by_record, by_other, same, one }
+    }
+}
+
 impl Diagnosis<'_> {
     /// A record whose clock seems to be wrong: what is found, by the clock of the record or by the other,
     /// whichever is more probable. Says whether the clock is to blame.
@@ -74,19 +94,19 @@ impl Diagnosis<'_> {
     ) -> Result<(Searched, bool), DiagnoseError> {
         let mended: Vec<Record> = records.iter().map(|r| fault.mend(r)).collect();
         let mended_test = test.map(|record| fault.mend(record));
-        let both = ((records, test), (&mended[..], mended_test.as_ref()));
-        if let Some(clock) = self.sure_of_clock(both, watch)? {
-            return Ok((self.measured(clock, &mended, mended_test.as_ref(), watch)?, true));
-        }
+        let (by_record, by_other) = ((records, test), (&mended[..], mended_test.as_ref()));
+        let to_blame = |other| Ok((self.measured(other, by_other.0, by_other.1, watch)?, true));
+        let known = match self.clock_first(by_other, watch)? {
+            Some(clock) if self.is_sure(&clock, by_record, by_other, watch)? => {
+                return to_blame(clock);
+            }
+            known => known,
+        };
         let machine = self.answered(records, test, self.max_causes, watch)?;
-        let is_inside = machine.chosen.is_by_innovations();
-        let judged = |all: &[Record]| Judged::new(&searchable(all, test), is_inside);
-        let (by_record, by_other) = (judged(records), judged(&mended));
-        let (likelihood, price) = by_record.answer(&machine)?;
-        // a shifted column has fewer readings, each of the same density
-        let same = by_record.readings / by_other.readings;
-        let one = by_record.numbers(1) + Choices::default().price(false);
-        let bare = same * by_other.log_likelihood(self.system) - one;
+        let clocks = Clocks::new(by_record, by_other, machine.chosen.is_by_innovations());
+        let Clocks { same, one, .. } = clocks;
+        let (likelihood, price) = clocks.by_record.answer(&machine)?;
+        let bare = same * clocks.by_other.log_likelihood(self.system) - one;
         let own = likelihood - price;
         // where the machine leaves nothing but noise, no clock has a larger likelihood
         let at_most = match machine.chosen.dependence < DEPENDS {
@@ -95,12 +115,14 @@ impl Diagnosis<'_> {
         };
         let mut clock = bare;
         if own < at_most && !watch.stopped() {
-            let other = self.answered(&mended, mended_test.as_ref(), self.max_causes, watch)?;
-            let (likelihood, price) = by_other.answer(&other)?;
+            let other = match known {
+                Some(known) => known,
+                None => self.answered(by_other.0, by_other.1, self.max_causes, watch)?,
+            };
+            let (likelihood, price) = clocks.by_other.answer(&other)?;
             clock = clock.max(same * likelihood - price - one);
             if clock > own {
-                let searched = self.measured(other, &mended, mended_test.as_ref(), watch)?;
-                return Ok((searched, true));
+                return to_blame(other);
             }
         }
         let probability = 1.0 / (1.0 + (own - clock).exp());
@@ -109,32 +131,39 @@ impl Diagnosis<'_> {
         Ok((other.into_iter().fold(searched, Searched::or_else), false))
     }
 
-    /// What is found by the other clock, where that clock alone leaves nothing but noise and no machine by the
-    /// clock of the record is as probable. A machine of k causes has at most the likelihood of noise and takes
-    /// k numbers and choices, so that only sets of so few causes are searched as could be.
-    fn sure_of_clock(
+    /// What is found by the other clock, where that clock leaves nothing but noise before any cause is named.
+    fn clock_first(
         &self,
-        ((records, test), (mended, mended_test)): (Source<'_>, Source<'_>),
+        (mended, test): Source<'_>,
         watch: &dyn Watch,
     ) -> Result<Option<Chosen<'_>>, DiagnoseError> {
-        let noise = |of: &Chosen<'_>| of.chosen.dependence < DEPENDS && !watch.stopped();
-        if !noise(&self.answered(mended, mended_test, 0, watch)?) {
+        let bare = self.answered(mended, test, 0, watch)?;
+        if watch.stopped() || bare.chosen.dependence >= DEPENDS {
             return Ok(None);
         }
-        let clock = self.answered(mended, mended_test, self.max_causes, watch)?;
-        let is_inside = clock.chosen.is_by_innovations();
-        let judged = |all: &[Record], test| Judged::new(&searchable(all, test), is_inside);
-        let (by_record, by_other) = (judged(records, test), judged(mended, mended_test));
-        let (likelihood, price) = by_other.answer(&clock)?;
-        let one = by_record.numbers(1) + Choices::default().price(false);
-        let most = (1.0 + price / one) as usize;
-        if !noise(&clock) || most >= self.max_causes {
-            return Ok(None);
+        self.answered(mended, test, self.max_causes, watch).map(Some)
+    }
+
+    /// Whether no machine by the clock of the record is as probable as an answer by the other clock. A machine
+    /// of k causes has at most the likelihood of noise and takes k numbers and choices, so that only sets of so
+    /// few causes are searched as could be.
+    fn is_sure(
+        &self,
+        clock: &Chosen<'_>,
+        (records, test): Source<'_>,
+        by_other: Source<'_>,
+        watch: &dyn Watch,
+    ) -> Result<bool, DiagnoseError> {
+        let clocks = Clocks::new((records, test), by_other, clock.chosen.is_by_innovations());
+        let (likelihood, price) = clocks.by_other.answer(clock)?;
+        let most = (1.0 + price / clocks.one) as usize;
+        let is_noise = clock.chosen.dependence < DEPENDS;
+        if !is_noise || watch.stopped() || most >= self.max_causes {
+            return Ok(false);
         }
-        let own = by_record.readings / by_other.readings * likelihood - price - one;
+        let own = clocks.same * likelihood - price - clocks.one;
         let machine = self.answered(records, test, most, watch)?;
-        let (likelihood, price) = by_record.answer(&machine)?;
-        let bare = by_record.log_likelihood(self.system);
-        Ok((own > (likelihood - price).max(bare)).then_some(clock))
+        let (likelihood, price) = clocks.by_record.answer(&machine)?;
+        Ok(own > (likelihood - price).max(clocks.by_record.log_likelihood(self.system)))
     }
 }

@@ -159,18 +159,17 @@ impl<'a, 'b> Study<'a, 'b> {
     /// model follow from none of them (Ljung, System Identification, 1999, section 16.6).
     pub fn unforeseen(&self, fit: &Fit) -> f64 {
         let problem = &*self.problem;
-        let Some(mut y) = problem.simulate(&fit.model, Grain::Coarse) else { return 0.0 };
+        let Some(y) = problem.simulate(&fit.model, Grain::Coarse) else { return 0.0 };
         let residual = problem.residual(&y, Part::All);
         let all = Stretches::new(problem, Part::All);
         let innovations = fit.noise.over(&all, &residual).whitener.whiten(&residual);
         let n = problem.samples(Part::All).count().max(1);
-        let foreseen = Arc::make_mut(&mut y);
-        for (o, own) in innovations.chunks(n).enumerate() {
-            for (k, e) in problem.samples(Part::All).zip(own) {
-                foreseen[o][k] = problem.y[o][k] - e;
-            }
+        // as measured where there are no innovations
+        let mut foreseen = problem.y.clone();
+        for (foreseen, own) in foreseen.iter_mut().zip(innovations.chunks(n)) {
+            problem.samples(Part::All).zip(own).for_each(|(k, e)| foreseen[k] -= e);
         }
-        dependence(problem, self.nominal, &y)
+        dependence(problem, self.nominal, &foreseen)
     }
 
     /// Fits the leading ones once more, each in its own disturbance.
