@@ -1,14 +1,14 @@
 //! At its neutral value an effect changes nothing, to the last bit, wherever it stands.
 
 use lacuna::effect::{CandidateEffect, Mechanism};
-use lacuna::system::Placed;
+use lacuna::system::{Hold, Placed, System};
 
 use super::shelf::{extend, models, neutral, outputs, places, record, same_bits, working};
 
 /// An effect with the value that changes nothing at this place: another value of a
 /// parameter is neutral at the present one.
 fn neutral_here(
-    system: &lacuna::system::System,
+    system: &System,
     effect: &dyn CandidateEffect,
     placed: &Placed,
 ) -> Vec<Box<dyn CandidateEffect>> {
@@ -20,27 +20,34 @@ fn neutral_here(
     vec![effect.with_values(&[own.value]).unwrap()]
 }
 
+/// The same system, its inputs between samples held in another way.
+fn holding(system: &System, hold: Hold) -> System {
+    let mut system = system.clone();
+    system.sampling.hold = hold;
+    system
+}
+
 #[test]
 fn every_effect_at_every_place_of_every_model() {
     let effects = lacuna::register::effects();
     let mut stood = vec![0; effects.len()];
     let mut failures = vec![];
     for (name, system) in models() {
-        for hold in [lacuna::system::Hold::Zero, lacuna::system::Hold::First] {
-            let mut system = system.clone();
-            system.sampling.hold = hold;
-            let record = record(&system, 60);
-            let plain = outputs(&system, &record);
-            for (number, (card, effect)) in effects.iter().enumerate() {
-                for placed in places(&system, working(effect.as_ref()).as_ref()) {
-                    for neutral in neutral_here(&system, effect.as_ref(), &placed) {
-                        let placed = Placed { effect: neutral, ..placed.clone() };
-                        let told = format!("{} into {} of {:?}", card.name, placed.into, placed.of);
-                        let Some(extended) = extend(&system, [placed]) else {
-                            panic!("{name}: {told} stands there, but not when neutral")
-                        };
+        let record = record(&system, 60);
+        let held = [Hold::Zero, Hold::First];
+        let plain = held.map(|hold| outputs(&holding(&system, hold), &record));
+        for (number, (card, effect)) in effects.iter().enumerate() {
+            for placed in places(&system, working(effect.as_ref()).as_ref()) {
+                for neutral in neutral_here(&system, effect.as_ref(), &placed) {
+                    let placed = Placed { effect: neutral, ..placed.clone() };
+                    let told = format!("{} into {} of {:?}", card.name, placed.into, placed.of);
+                    let Some(extended) = extend(&system, [placed]) else {
+                        panic!("{name}: {told} stands there, but not when neutral")
+                    };
+                    for (hold, plain) in held.into_iter().zip(&plain) {
                         stood[number] += 1;
-                        if !same_bits(&outputs(&extended, &record), &plain) {
+                        let extended = holding(&extended, hold);
+                        if !same_bits(&outputs(&extended, &record), plain) {
                             failures.push(format!(
                                 "{name}, {hold:?}: {told}: {:?}",
                                 extended.effects[0].effect

@@ -4,15 +4,28 @@ use super::*;
 
 #[test]
 fn orders_are_found_without_being_told() {
-    println!("order found among 60 random systems of order 1 to 6, 2000 samples, 20 dB:");
+    orders(3);
+}
+
+/// The table of `docs/results.md`.
+#[test]
+#[ignore = "takes minutes: run it by name, with --nocapture, for the table"]
+fn orders_of_ten_seeds() {
+    orders(10);
+}
+
+/// Of so many random systems of every order, 19 in 20 have theirs found.
+fn orders(seeds: u64) {
+    let all = 6 * seeds as usize;
+    println!("order found among {all} random systems of order 1 to 6, 2000 samples, 20 dB:");
     for (what, nu, ny, pole, lowpass) in [
         ("white noise, 1 by 1", 1, 1, 0.0, 0.0),
         ("white noise, 2 by 2", 2, 2, 0.0, 0.0),
         ("noise with pole 0.9, 1 by 1", 1, 1, 0.9, 0.0),
         ("noise with pole 0.9, inputs with pole 0.8, 2 by 2", 2, 2, 0.9, 0.8),
     ] {
-        let (mut right, mut low, mut high) = (0, 0, 0);
-        for seed in 0..10 {
+        let (mut right, mut low, mut high) = (0_usize, 0, 0);
+        for seed in 0..seeds {
             for order in 1..=6 {
                 let mut random = Random::new(5000 + 100 * seed + order as u64);
                 let truth = Truth::random(&mut random, order, nu, ny);
@@ -26,7 +39,7 @@ fn orders_are_found_without_being_told() {
             }
         }
         println!("{what}: {right} right, {low} too low, {high} too high");
-        assert!(right >= 57, "{what}: {right} right, {low} too low, {high} too high");
+        assert!(20 * right >= 19 * all, "{what}: {right} right, {low} too low, {high} too high");
     }
 }
 

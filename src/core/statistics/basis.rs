@@ -1,6 +1,7 @@
 //! Orthonormal bases, one column at a time.
 
 use super::dot;
+use crate::per_isa;
 
 /// Takes the part of `column` that is new into an orthonormal basis.
 pub fn add_to_basis(basis: &mut Vec<Vec<f64>>, mut column: Vec<f64>) {
@@ -24,8 +25,15 @@ pub fn add_to_basis(basis: &mut Vec<Vec<f64>>, mut column: Vec<f64>) {
 pub fn project(basis: &[Vec<f64>], x: &mut [f64]) {
     for column in basis {
         let share = dot(column, x);
-        for (x, c) in x.iter_mut().zip(column) {
-            *x -= share * c;
+        take_off(x, share, column);
+    }
+}
+
+per_isa! {
+    /// x -= share * column
+    fn take_off [] (x: &mut [f64], share: f64, column: &[f64]) {
+        for k in 0..x.len().min(column.len()) {
+            x[k] -= share * column[k];
         }
     }
 }

@@ -4,6 +4,7 @@
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 use crate::fourier::{self, Complex};
+use crate::per_isa;
 
 /// Blocks at most and at least.
 const MOST: usize = 40;
@@ -13,18 +14,36 @@ const INFORMATIVE: f64 = 0.01;
 /// Scores beyond this are reported as this.
 const HIGHEST: f64 = 37.0;
 
-/// Sum of products of two series.
-pub fn dot(a: &[f64], b: &[f64]) -> f64 {
-    // four sums at once: fast, and the same in every build
-    let mut sums = [0.0; 4];
-    let (a4, b4) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = a4.remainder().iter().zip(b4.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in a4.zip(b4) {
-        for i in 0..4 {
-            sums[i] += x[i] * y[i];
+/// Sums that run side by side: as many as keep the adders of the widest registers busy.
+const SUMS: usize = 16;
+
+per_isa! {
+    /// Sum of products of two series; the same to the last bit in every build and on every processor.
+    pub fn dot [] (a: &[f64], b: &[f64]) -> f64 {
+        let n = a.len().min(b.len());
+        let (a, b) = (&a[..n], &b[..n]);
+        let mut sums = [0.0; SUMS];
+        let mut k = 0;
+        // loops and no iterators: these are functions of their own, which are not always put in
+        while k + SUMS <= n {
+            let (x, y) = (&a[k..k + SUMS], &b[k..k + SUMS]);
+            for i in 0..SUMS {
+                sums[i] += x[i] * y[i];
+            }
+            k += SUMS;
         }
+        let mut sum = 0.0;
+        while k < n {
+            sum += a[k] * b[k];
+            k += 1;
+        }
+        for half in [8, 4, 2, 1] {
+            for i in 0..half {
+                sums[i] += sums[i + half];
+            }
+        }
+        sums[0] + sum
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 /// Mean.
