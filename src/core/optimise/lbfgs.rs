@@ -7,6 +7,7 @@ use argmin::solver::linesearch::MoreThuenteLineSearch;
 use argmin::solver::quasinewton::LBFGS;
 use serde::{Deserialize, Serialize};
 
+use super::normal::dot;
 use super::stop::positive;
 use super::{
     Objective, Observer, OptimiseError, Optimiser, Outcome, Stop, Stopped, Transformed, Watch,
@@ -115,10 +116,6 @@ impl Gradient for Seen<'_> {
         self.evaluate(point);
         Ok(self.memory.borrow().gradient.iter().map(|g| g * self.scale).collect())
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 type Iteration = IterState<Vec<f64>, Vec<f64>, (), (), (), f64>;

@@ -24,14 +24,13 @@ pub fn add_to_basis(basis: &mut Vec<Vec<f64>>, mut column: Vec<f64>) {
 /// Takes out of `x` what the basis explains.
 pub fn project(basis: &[Vec<f64>], x: &mut [f64]) {
     for column in basis {
-        let share = dot(column, x);
-        take_off(x, share, column);
+        take_off(x, dot(column, x), column);
     }
 }
 
 per_isa! {
     /// x -= share * column
-    fn take_off [] (x: &mut [f64], share: f64, column: &[f64]) {
+    pub fn take_off [] (x: &mut [f64], share: f64, column: &[f64]) {
         for k in 0..x.len().min(column.len()) {
             x[k] -= share * column[k];
         }

@@ -14,7 +14,7 @@ const INFORMATIVE: f64 = 0.01;
 /// Scores beyond this are reported as this.
 const HIGHEST: f64 = 37.0;
 
-/// Sums that run side by side: as many as keep the adders of the widest registers busy.
+/// Sums that run side by side, a power of two: as many as keep the adders of the widest registers busy.
 const SUMS: usize = 16;
 
 per_isa! {
@@ -24,7 +24,7 @@ per_isa! {
         let (a, b) = (&a[..n], &b[..n]);
         let mut sums = [0.0; SUMS];
         let mut k = 0;
-        // loops and no iterators: these are functions of their own, which are not always put in
+        // loops and no iterators, which are functions of their own and not always inlined
         while k + SUMS <= n {
             let (x, y) = (&a[k..k + SUMS], &b[k..k + SUMS]);
             for i in 0..SUMS {
@@ -37,10 +37,12 @@ per_isa! {
             sum += a[k] * b[k];
             k += 1;
         }
-        for half in [8, 4, 2, 1] {
+        let mut half = SUMS / 2;
+        while half > 0 {
             for i in 0..half {
                 sums[i] += sums[i + half];
             }
+            half /= 2;
         }
         sums[0] + sum
     }

@@ -15,7 +15,7 @@ pub(crate) mod test_noise;
 mod whiteness;
 
 pub use averaged::Averaged;
-pub use basis::{add_to_basis, project};
+pub use basis::{add_to_basis, project, take_off};
 pub use blocks::{
     autocorrelation, block_sums, blocks, corrected_score, deviation, dot, mean, median, mixture,
     normal_tail, odds, rms, spread, wald, weight,

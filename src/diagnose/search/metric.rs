@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use super::beam::name;
 use super::dictionary::Item;
-use crate::statistics::{add_to_basis, dot, project};
+use crate::statistics::{add_to_basis, dot, project, take_off};
 
 /// Share of a second column that has to be its own.
 const OWN: f64 = 1e-3;
@@ -191,8 +191,8 @@ impl Solved<'_> {
             .par_iter()
             .map(|&c| {
                 let mut own = self.metric.columns[c].clone();
-                for (q, a) in self.basis.iter().zip(&self.along[c]) {
-                    own.iter_mut().zip(q).for_each(|(v, q)| *v -= a * q);
+                for (q, &a) in self.basis.iter().zip(&self.along[c]) {
+                    take_off(&mut own, a, q);
                 }
                 own.into_iter().map(|v| v as f32).collect()
             })

@@ -9,6 +9,7 @@ use super::scene::{Stage, name, name_of, named, position, sets};
 use crate::StudyError;
 use crate::diagnose::{Alternative, Cause, Diagnosis};
 use crate::exam::Concealed;
+use crate::statistics::dot;
 use crate::system::{Placed, System};
 
 /// Rounds of least squares.
@@ -18,10 +19,6 @@ const ROUNDS: usize = 2;
 fn differences(a: &[Vec<Vec<f64>>], b: &[Vec<Vec<f64>>]) -> Vec<f64> {
     let pairs = a.iter().flatten().flatten().zip(b.iter().flatten().flatten());
     pairs.map(|(a, b)| a - b).map(|d| if d.is_finite() { d } else { 0.0 }).collect()
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 impl Stage<'_> {

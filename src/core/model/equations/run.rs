@@ -120,17 +120,11 @@ per_lanes! {
         while done < block.packs {
             let packs = PACKS.min(block.packs - done);
             for step in program.steps() {
-                // registers are used anew for every few packs
-                macro_rules! operand {
-                    ($place:expr) => {
-                        lists[$place.list as usize].at(
-                            $place.entry,
-                            if $place.list == List::Registers { 0 } else { done },
-                        )
-                    };
-                }
-                let operands =
-                    [operand!(step.a), operand!(step.b), operand!(step.c), operand!(step.to)];
+                let operands = [step.a, step.b, step.c, step.to].map(|place| {
+                    // registers are used anew for every few packs
+                    let first = if place.list == List::Registers { 0 } else { done };
+                    lists[place.list as usize].at(place.entry, first)
+                });
                 // SAFETY: no entry of a step is beyond the program's lengths, which were
                 // compared with the lists above; only registers and the answer are written,
                 // through pointers from mutable slices, which nothing else uses here.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::{EncoderInitialiser, Found, as_it_is, set_linear, started};
 use crate::encoder::baseline::Examples;
 use crate::encoder::{Baseline, Encoder, EncoderError, LinearMap, Outputs, Started, Window};
+use crate::statistics::dot;
 
 /// min ||Phi W' - X||: windows along the record against the baseline's states there.
 ///
@@ -119,19 +120,6 @@ fn scaled(values: &[f64], n: usize) -> (Vec<f64>, Vec<f64>, Vec<f64>) {
         sizes.push(size);
     }
     (rows, centres, sizes)
-}
-
-/// Eight partial sums, which the compiler keeps in registers.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(x, y)| x * y).sum();
-    for (a, b) in a.zip(b) {
-        for i in 0..8 {
-            sums[i] += a[i] * b[i];
-        }
-    }
-    rest + sums.iter().sum::<f64>()
 }
 
 #[typetag::serde(name = "least_squares")]
