@@ -60,10 +60,11 @@ impl Effect for ExtraMode {
 
     fn search(&self, view: &View) -> Search {
         let card = Effect::card(self);
-        let first = view.frequencies.first().copied().unwrap_or(1.0);
-        let last = view.frequencies.last().copied().unwrap_or(1.0);
-        let range = (0.5 * first, 1.5 * last);
-        let mut search = Search::plain(&card).over(&card, "frequency", &view.frequencies, range);
+        let mut search = Search::plain(&card);
+        if let (Some(first), Some(last)) = (view.frequencies.first(), view.frequencies.last()) {
+            let range = (0.5 * first, 1.5 * last);
+            search = search.over(&card, "frequency", &view.frequencies, range);
+        }
         for start in &mut search.starts {
             start[2] = 0.05;
         }

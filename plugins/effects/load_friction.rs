@@ -66,7 +66,7 @@ impl Effect for LoadFriction {
     fn search(&self, view: &View) -> Search {
         let card = Effect::card(self);
         let rms = view.rms;
-        Search::plain(&card).over(&card, "width", &[0.03 * rms, 0.2 * rms], (0.003 * rms, rms))
+        Search::plain(&card).over(&card, "width", &[0.03 * rms, 0.2 * rms], view.widths())
     }
 }
 

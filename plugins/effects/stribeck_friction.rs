@@ -69,7 +69,7 @@ impl Effect for StribeckFriction {
         for start in &mut search.starts {
             start[3] = 0.05 * rms;
         }
-        (search.min[3], search.max[3]) = (0.003 * rms, rms);
+        (search.min[3], search.max[3]) = view.widths();
         search
     }
 }

@@ -10,11 +10,14 @@ import numpy as np
 
 from ._lacuna import CallError
 
-#: What is said where such a model is used.
-SLOW = (
-    "this model's law is written in Python: every step calls the interpreter, which is some hundred "
-    "times slower than the same equations in a model file"
-)
+
+def slow(why: str) -> str:
+    """What is said where such a model is used."""
+    because = f" ({why})" if why else ""
+    return (
+        f"this model's law is called in Python at every step{because}, which is some hundred times slower than "
+        "its equations"
+    )
 
 
 def entries(what: str, given: Any) -> List[Dict[str, Any]]:

@@ -9,10 +9,11 @@ import warnings
 from pathlib import Path
 from typing import Any, Callable, Dict, List, Mapping, Optional, Tuple, Union
 
-from . import law
-from ._lacuna import CallError
+from . import law, traced
+from ._lacuna import CallError, InputError
 from ._lacuna import Model as Native
 from ._lacuna import demo as _demo
+from .nodes import Untraceable
 from .record import Record
 from .result import Fields
 from .work import Remark
@@ -31,6 +32,8 @@ class Model:
     def __init__(self, native: Native, path: Optional[str] = None) -> None:
         self._native = native
         self._path = path
+        #: Why a function is called at every step, where one is.
+        self._untraced = ""
         self._signals = Fields(json.loads(native.signals()))
 
     @classmethod
@@ -69,8 +72,18 @@ class Model:
         sampling_time: Optional[float] = None,
         integrator: Optional[Mapping[str, Any]] = None,
         hold: str = "zero",
+        trace: bool = True,
     ) -> "Model":
-        """A model written in Python, for :func:`simulate` and :func:`diagnose`.
+        """A model written in Python.
+
+        The functions are called once with symbols, which gives their equations: the model is then what
+        it would be in a model file (:meth:`to_toml` shows it), as fast, and good for every command. That
+        needs functions of numpy, of `math`, `min`, `max` and arithmetic, no branches on values, and channels
+        that enter linearly. What was read is compared with the function at random points.
+
+        Where it cannot be read, or with ``trace=False``, the function is called at every step: some hundred
+        times slower, for :func:`simulate` and :func:`diagnose` alone, in this process only; a warning says
+        why.
 
         Parameters
         ----------
@@ -78,8 +91,8 @@ class Model:
             ``f(x, u, theta)`` gives dx/dt, or the next state of a ``discrete`` model: one value per
             state. Arguments are named tuples, ``x.v`` or ``x[1]``; further arguments called ``w``
             (what enters the ``channels``, one value each, 0 in the model as it is) and ``t`` (time
-            in s) are given to a function that takes them. It is called with arrays of shape
-            ``(n,)`` where it understands them (numpy functions), else with numbers. Left out
+            in s) are given to a function that takes them. Where it is called at every step, it gets
+            arrays of shape ``(n,)`` if it understands them (numpy functions), else numbers. Left out
             with the states, where ``output`` is all there is (inverse dynamics).
         states, inputs, outputs, channels, coordinates
             Names, or a dictionary of names to units or to ``{"unit": .., "quantity": ..}``; a state
@@ -94,9 +107,9 @@ class Model:
             ``f(x, u, theta)`` gives the ``coordinates``; without it they are the states.
         sampling_time, integrator, hold
             As in a model file: s; ``{"method": "rk4", "substeps": 1}``; ``"zero"`` or ``"first"``.
-
-        It is slower than equations in a model file, which is said when it is used, lives in this
-        process only, and cannot be saved or exported.
+        trace
+            Whether the functions are read as equations where they can be. They must then depend on their
+            arguments alone.
         """
         declared = {
             "inputs": law.entries("inputs", inputs),
@@ -115,8 +128,17 @@ class Model:
             sampling["sampling_time"] = sampling_time
         if integrator is not None:
             sampling["integrator"] = dict(integrator)
+        why = "trace=False"
+        if trace:
+            try:
+                read = law.Answers(declared, derivative, output, coordinate)
+                return cls.from_dict({**sampling, "model": {"equations": traced.equations(declared, read, discrete)}})
+            except (Untraceable, InputError) as error:
+                why = str(error)
         text = json.dumps({"discrete": discrete, **declared}, default=float)
-        return cls(Native.written(text, json.dumps(sampling), answers))
+        model = cls(Native.written(text, json.dumps(sampling), answers))
+        model._untraced = why
+        return model
 
     @property
     def inputs(self) -> Dict[str, str]:

@@ -90,12 +90,12 @@ class _Call:
         return self.model._native
 
     def settle(self, start: Callable[[], native.Job]) -> Answer:
-        slow = self.model is not None and self.model._native.is_written
-        if slow:
-            warnings.warn(law.SLOW, Remark, stacklevel=4)
+        slow = []
+        if self.model is not None and self.model._native.is_written:
+            slow.append(law.slow(self.model._untraced))
+            warnings.warn(slow[0], Remark, stacklevel=4)
         answer = settle(start(), self.progress)
-        if slow:
-            answer[4].append(law.SLOW)
+        answer[4].extend(slow)
         return answer
 
 

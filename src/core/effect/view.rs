@@ -87,6 +87,12 @@ impl View {
         self.quantile(0.99) - self.quantile(0.01)
     }
 
+    /// Smallest and largest width of a jump at zero, such as that of dry friction. What sticks creeps, at a speed in
+    /// proportion to the width, for as long as it sticks: a record tells widths that are far below its motion.
+    pub fn widths(&self) -> (f64, f64) {
+        (1e-4 * self.rms, self.rms)
+    }
+
     /// Whether the coordinate takes both signs.
     pub fn changes_sign(&self) -> bool {
         self.min() < 0.0 && self.max() > 0.0
