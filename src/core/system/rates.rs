@@ -151,6 +151,17 @@ impl Rates {
                     (values[a] - values[b]).abs() <= 1e-12 * values[a].abs().max(1e-12)
                 })
     }
+
+    /// Whether one entry is always the other in another unit: a positive multiple of it.
+    pub fn is_multiple(&self, a: usize, b: usize) -> bool {
+        let Some(first) = self.seen.iter().find(|(values, _)| values[b] != 0.0) else {
+            return self.same(a, b);
+        };
+        let factor = first.0[a] / first.0[b];
+        let holds =
+            |values: &[f64]| (values[a] - factor * values[b]).abs() <= 1e-12 * values[a].abs();
+        factor > 0.0 && self.seen.iter().all(|(values, _)| holds(values))
+    }
 }
 
 /// Per input the input that is its rate of change, as quantities and units declare: a velocity in the unit

@@ -42,12 +42,17 @@ impl Builder<'_, '_> {
         }
     }
 
-    /// Named sources except time, each value once.
+    /// Named sources except time, each value once: an output that is a coordinate in another unit has no laws
+    /// of its own.
     pub(crate) fn sources(&self) -> Vec<usize> {
         let base = &self.problem.base;
         let mut kept: Vec<usize> = vec![];
         for entry in 0..base.sources.named - 1 {
-            if !kept.iter().any(|&other| base.rates.same(other, entry)) {
+            let is_known = |&other: &usize| {
+                base.rates.same(other, entry)
+                    || base.sources.is_output(entry) && base.rates.is_multiple(other, entry)
+            };
+            if !kept.iter().any(is_known) {
                 kept.push(entry);
             }
         }

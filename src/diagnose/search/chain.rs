@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use super::beam::{Fit, SetKey};
 use super::begin::{begun, is_far};
+use super::carried::carried;
 use super::contribution::{contributions, tangents};
 use super::dictionary::{About, Item, dictionary, room};
 use super::fits::Wish;
@@ -121,7 +122,8 @@ fn one_round(study: &mut Study<'_, '_>, best: Fit, round: usize, last: bool) -> 
                 true => valued,
                 false => ground.standing(study).moves(&items, &metrics, true).valued,
             };
-            let wanted = stale.iter().map(|&i| items[i].place()).collect();
+            let mut wanted: BTreeSet<_> = stale.iter().map(|&i| items[i].place()).collect();
+            wanted.extend(carried(study, &ground.fit));
             refresh(study, &ground, &mut items, wanted, true);
             moves = ground.standing(study).moves(&items, &metrics, true).moves;
             let chosen = neighbours(&ground.fit, moves, &items, &study.beam, &study.settled);

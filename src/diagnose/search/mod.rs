@@ -6,7 +6,7 @@
 //!         moves <- take out 0 to 3 causes, put in the best one or two (one matrix of products)
 //!         fit the leading moves, racing; model <- the most probable of all that were fitted
 //! until nothing is promising
-//! fit the neighbours of the model: same place, same law, same coordinate; repeat if one is better
+//! fit the neighbours of the model: same place, same law (with the shape it has), same coordinate; repeat if one is better
 //! where a place needs several laws: a free curve in their place, every law by regression on it; repeat
 //! the same with parameters free, where that is near; laws without a name, where something is left
 //! ```
@@ -17,6 +17,7 @@ pub(crate) mod starts;
 
 mod beam;
 mod begin;
+mod carried;
 mod chain;
 mod contribution;
 mod dictionary;
