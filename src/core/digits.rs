@@ -10,6 +10,7 @@
 ///
 /// assert_eq!(number(0.120_34, Some(0.0031)), "0.1203");
 /// assert_eq!(number(9.81, None), "9.810");
+/// assert_eq!(number(-0.4, Some(100.0)), "0");
 /// ```
 pub fn number(value: f64, error: Option<f64>) -> String {
     let digits = decimals(value, error);
@@ -33,7 +34,12 @@ fn decimals(value: f64, error: Option<f64>) -> i32 {
 fn fixed(value: f64, decimals: i32, is_rounded: bool) -> String {
     let scale = 10f64.powi(-decimals.min(0));
     let value = if is_rounded && decimals < 0 { (value / scale).round() * scale } else { value };
-    format!("{value:.*}", decimals.clamp(0, 12) as usize)
+    let text = format!("{value:.*}", decimals.clamp(0, 12) as usize);
+    // what rounds to nothing has no sign
+    match text.strip_prefix('-') {
+        Some(bare) if bare.bytes().all(|b| matches!(b, b'0' | b'.')) => bare.into(),
+        _ => text,
+    }
 }
 
 /// A number with its unit, four significant digits.

@@ -206,6 +206,18 @@ mod tests {
     }
 
     #[test]
+    fn a_signal_in_another_unit_is_a_multiple() {
+        let text = "sampling_time = 0.01\n[model.equations]\ninputs = [{ name = \"u\" }]\n\
+             states = [{ name = \"p\", derivative = \"u - p\" }]\n\
+             outputs = [{ name = \"mm\", value = \"1000*p\" }, { name = \"other\", value = \"-p\" }, \
+             { name = \"curve\", value = \"p*p\" }]\n";
+        let plan = parse(text, "one.toml", Format::Toml).unwrap().plan(0.01).unwrap();
+        let at = |name: &str| plan.sources.find(name).unwrap();
+        let of_p = |name: &str| plan.rates.is_multiple(at("p"), at(name));
+        assert_eq!(["mm", "other", "curve", "u"].map(of_p), [true, false, false, false]);
+    }
+
+    #[test]
     fn a_recorded_velocity_is_the_rate_of_the_one_position_of_its_unit() {
         let rate = |inputs: &[(&str, &str, &str)]| {
             let list: Vec<String> = inputs

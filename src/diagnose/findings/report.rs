@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::error::DiagnoseError;
 use crate::evaluate::Metrics;
-use crate::findings::cause::Cause;
+use crate::findings::cause::{Cause, Site};
 use crate::findings::causes::Scores as By;
 use crate::findings::context::{Context, Source};
 use crate::findings::finding::{Left, OtherTrack, Ranked, Scores, Verdict};
@@ -84,7 +84,7 @@ impl Context<'_, '_> {
             (0, _) => Verdict::DataFault,
             _ => Verdict::CausesFound,
         };
-        let mut notes = self.of_the_record(&y_before);
+        let mut notes = self.of_the_record();
         notes.extend(self.notes(chosen, &causes));
         notes.extend(levels.into_iter().flatten());
         notes.extend(held);
@@ -103,10 +103,13 @@ impl Context<'_, '_> {
         };
         series.test = tested;
         most_first(&mut causes, chosen);
+        // a parameter that is named has moved, whatever the others did
+        let is_moved = causes.iter().any(|cause| cause.wording.site == Site::Parameter);
+        let track = if is_moved { Track::ParametersFree } else { chosen.track };
         Ok(Searched {
             verdict,
-            track: chosen.track,
-            other_track: Some(self.other(chosen, other)),
+            track,
+            other_track: (track == chosen.track).then(|| self.other(chosen, other)),
             before: Scores { data: self.data_metrics(&y_before), test: before.metrics },
             after: Scores { data: self.data_metrics(&chosen.y), test: after.metrics },
             false_discovery,

@@ -13,10 +13,12 @@ use crate::statistics::{deviation, mean};
 const PER_UNKNOWN: usize = 10;
 /// Share of its size below which a series does not move.
 const STILL: f64 = 1e-12;
+/// Part of its spread within which a series is on neither side of its mean.
+const BAND: f64 = 0.25;
 
 impl Context<'_, '_> {
-    /// What has to be known of the record before any finding; `y` is what the model makes of it.
-    pub fn of_the_record(&self, y: &[Vec<f64>]) -> Vec<Note> {
+    /// What has to be known of the record before any finding.
+    pub fn of_the_record(&self) -> Vec<Note> {
         let signals = &self.problem.base.signals;
         let mut notes = vec![];
         let still: Vec<String> = signals
@@ -41,7 +43,7 @@ impl Context<'_, '_> {
         // a model that never turns back has no period
         let turns = signals.states.len() > 1;
         for (o, signal) in signals.outputs.iter().enumerate().filter(|_| turns) {
-            let course = self.problem.counted(o, &y[o], Part::All);
+            let course = self.problem.counted(o, &self.joined.measured[o], Part::All);
             let crossings = crossings(&course);
             if crossings < 2 && moves(&course) {
                 notes.push(Note::LessThanAPeriod { output: signal.name.clone(), crossings });
@@ -57,11 +59,17 @@ fn moves(series: &[f64]) -> bool {
     deviation(&known) > STILL * mean(&known).abs().max(f64::MIN_POSITIVE)
 }
 
-/// How often a series crosses its mean: twice per period.
+/// How often a series crosses its mean: twice per period. Noise about the mean is no crossing: the other side counts
+/// from a part of the spread on (hysteresis, as in a Schmitt trigger).
 fn crossings(series: &[f64]) -> usize {
-    let middle = mean(series);
-    let above: Vec<bool> = series.iter().map(|v| *v > middle).collect();
-    above.windows(2).filter(|pair| pair[0] != pair[1]).count()
+    let (middle, band) = (mean(series), BAND * deviation(series));
+    let (mut side, mut count) = (None, 0);
+    for off in series.iter().map(|v| v - middle).filter(|off| off.abs() > band) {
+        let above = off > 0.0;
+        count += usize::from(side.is_some_and(|side| side != above));
+        side = Some(above);
+    }
+    count
 }
 
 #[cfg(test)]
@@ -76,5 +84,11 @@ mod tests {
         };
         assert_eq!(crossings(&wave(0.25)), 1);
         assert!(crossings(&wave(1.0)) >= 1 && crossings(&wave(3.0)) >= 5);
+        let noisy: Vec<f64> = wave(0.25)
+            .iter()
+            .enumerate()
+            .map(|(k, v)| v + 0.02 * f64::from(k as u32 % 2))
+            .collect();
+        assert_eq!(crossings(&noisy), 1);
     }
 }

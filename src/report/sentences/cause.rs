@@ -27,8 +27,8 @@ pub fn cause(cause: &Cause) -> String {
     } else if let Some(acts) = &cause.acts_where {
         text += &format!(" It acts {}.", acts_where(acts));
     } else if cause.wording.is_line_here {
-        text += " Nearly all of this record lies on one side of its bend, where it is a straight line: \
-                 a linear law and a constant would do.";
+        text += " Nearly all of this record lies on one side of its bend, where it is a straight line, \
+                 which would do as well.";
     }
     if let Some(MostLike { effect, share }) = &cause.most_like {
         text += &format!(" As one curve it is most like `{effect}` ({} of it).", percent(*share));
