@@ -72,7 +72,8 @@ impl Predictor {
             if causes[cause].parts.is_empty() {
                 causes.remove(cause);
             }
-            causes.push(self.as_cause(parameter));
+            let place = (Site::Parameter(parameter), None);
+            causes.push(Found { parts: vec![Part::Parameter(parameter)], ..self.as_cause(place) });
             let fitted = self.fit(joined(&causes), &now.theta, &now.noise)?;
             let fitted = self.refit(fitted)?;
             let gain = self.merit(&fitted, &causes) - value;
@@ -87,11 +88,11 @@ impl Predictor {
         tried.par_iter().filter_map(one).collect()
     }
 
-    /// A parameter as a cause.
-    fn as_cause(&self, p: usize) -> Found {
+    /// A cause at a place that is chosen among all of them, no parts in it yet.
+    pub(super) fn as_cause(&self, place: (Site, Option<usize>)) -> Found {
         Found {
-            place: (Site::Parameter(p), None),
-            parts: vec![Part::Parameter(p)],
+            place,
+            parts: vec![],
             choice: (self.places_count() as f64).ln(),
             log_odds: 0.0,
             law: 1.0,

@@ -4,7 +4,8 @@
 //! repeat  the most probable place and its laws, given the causes before (`places.rs`)
 //!         all causes fitted together, the noise anew
 //! until nothing more is probable
-//! a law that is a parameter in disguise becomes the parameter (`exchange.rs`); then more causes
+//! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), the pole of a slow force is
+//! chosen anew, with a constant or without (`steady.rs`); then more causes
 //! causes that are not needed beside the others are left out
 //! causes that held samples speak against are withdrawn; the rest fitted to all samples
 //! ```
@@ -60,7 +61,9 @@ impl Predictor {
         let (mut found, mut now) = (vec![], null.clone());
         loop {
             (found, now) = fit.one_by_one((found, now), most, stop, &mut nothing)?;
-            if stop() || !fit.exchanged(&mut found, &mut now) {
+            let mut exchanged =
+                || fit.exchanged(&mut found, &mut now) || fit.steadied(&mut found, &mut now, most);
+            if stop() || !exchanged() {
                 break;
             }
         }

@@ -55,6 +55,7 @@ mod sets;
 mod share;
 mod smoother;
 mod std_error;
+mod steady;
 mod tangent;
 mod transition;
 mod weigh;

@@ -27,7 +27,7 @@ const MOST: usize = 6;
 /// Poles that are fitted, of all that are looked at.
 const FITTED_POLES: usize = 2;
 /// Poles that a slow component may have beside 1.
-const POLES: [f64; 6] = [0.3, 0.6, 0.8, 0.9, 0.97, 0.99];
+pub(crate) const POLES: [f64; 6] = [0.3, 0.6, 0.8, 0.9, 0.97, 0.99];
 /// Renewals of the linearisation at most, and the change of log L at which it is settled.
 const RENEWED: usize = 3;
 const SETTLED: f64 = 0.5;

@@ -1,0 +1,89 @@
+//! A constant beside a slow force, whose pole is chosen anew.
+//!
+//! The noise is chosen before any cause is known, when friction and offsets make the slow force fade slowly or not at
+//! all. A process of long memory goes to any level and stays there, so that a constant beside it gains nothing. Once
+//! causes are named, the hypotheses of what is left of a force are
+//!
+//! ```text
+//! m[k+1] = pole m[k] + increments     for each of some poles, without a constant and beside one
+//! ```
+//!
+//! which are compared as all others are. Source: Ljung, "System Identification", 2nd ed., section 4.2
+//! (disturbances), 16.4 (choice of a structure).
+
+use rayon::prelude::*;
+
+use super::found::{Found, dealt, joined};
+use super::hypothesis::{Hypothesis, Part};
+use super::laws::offsets;
+use super::noise::Noise;
+use super::predictor::Predictor;
+use super::select::POLES;
+use super::tangent::Site;
+
+impl Predictor {
+    /// The causes with the best other pole of a slow force, with or without a constant at its channel; whether
+    /// there was a better one.
+    pub(crate) fn steadied(
+        &self,
+        found: &mut Vec<Found>,
+        now: &mut Hypothesis,
+        most: usize,
+    ) -> bool {
+        // a constant alone was asked for under the noise of nothing
+        let channels = 0..if found.is_empty() { 0 } else { now.noise.slow.len() };
+        let poles = || POLES.into_iter().chain([1.0]);
+        let tried: Vec<(Vec<Found>, Noise)> = channels
+            .filter(|&c| now.noise.slow[c].is_active())
+            .flat_map(|c| poles().map(move |pole| (c, pole)))
+            .flat_map(|(c, pole)| {
+                let mut noise = now.noise.clone();
+                noise.slow[c].pole = pole;
+                let plain = (pole != now.noise.slow[c].pole).then(|| found.clone());
+                let beside = self.constants(found, c, most).into_iter();
+                beside.chain(plain).map(move |causes| (causes, noise.clone()))
+            })
+            .collect();
+        let before = self.merit(now, found);
+        let fitted = |(mut causes, noise): (Vec<Found>, Noise)| {
+            let fit = self.refit(self.fit(joined(&causes), &now.theta, &noise)?)?;
+            let gain = self.merit(&fit, &causes) - before;
+            dealt(&mut causes, &fit);
+            Some((gain, causes, fit))
+        };
+        let all: Vec<_> = tried.into_par_iter().filter_map(fitted).collect();
+        let better = all.into_iter().filter(|(gain, ..)| *gain > 0.0);
+        let Some((gain, mut causes, fit)) = better.max_by(|a, b| a.0.total_cmp(&b.0)) else {
+            return false;
+        };
+        if causes.len() > found.len()
+            && let Some(last) = causes.last_mut()
+        {
+            // against the force that stood for it
+            (last.log_odds, last.law) = (gain, 1.0 / (1.0 + (-gain).exp()));
+            last.at_place = last.law;
+        }
+        (*found, *now) = (causes, fit);
+        true
+    }
+
+    /// The causes with a constant at a channel beside them, for each law of a constant; none where there is
+    /// one, or no room for one more.
+    fn constants(&self, found: &[Found], c: usize, most: usize) -> Vec<Vec<Found>> {
+        let site = Site::Force(c);
+        let is_constant =
+            |part: &Part| matches!(part, Part::Law { site: at, source: None, .. } if *at == site);
+        if found.len() >= most || found.iter().flat_map(|cause| &cause.parts).any(is_constant) {
+            return vec![];
+        }
+        let laws = offsets().into_iter().filter(|law| self.scope.effect(law.name));
+        let one = |law| {
+            let cause = Found {
+                parts: vec![Part::Law { site, source: None, law: Box::new(law) }],
+                ..self.as_cause((site, None))
+            };
+            [found, &[cause]].concat()
+        };
+        laws.map(one).collect()
+    }
+}
