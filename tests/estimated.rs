@@ -109,7 +109,8 @@ fn a_width_that_a_record_does_not_tell_spoils_no_other_number() {
     assert!((c.value - 0.6).abs() < 4.0 * c.std_error.unwrap(), "{c:?}");
     assert!((level.value + 0.5).abs() < 4.0 * level.std_error.unwrap(), "{level:?}");
     assert_eq!((level.unit.as_str(), width.unit.as_str()), ("N", "m/s"));
-    assert!(width.value > 1e-3 && width.value < 0.05, "{width:?}");
+    // the smallest width that is looked for is 1e-4 of the speed's RMS: narrower ones show where something sticks
+    assert!(width.value > 1e-5 && width.value < 0.05, "{width:?}");
     // what an estimate calls a number, it may be asked to hold
     let held = ["effects[0].width".to_string()];
     let found = estimate_with(&system, &[record], &held, 0, &()).unwrap();

@@ -40,8 +40,8 @@ impl Predictor {
                 let mut noise = now.noise.clone();
                 noise.slow[c].pole = pole;
                 let plain = (pole != now.noise.slow[c].pole).then(|| found.clone());
-                let beside = self.constants(found, c, most).into_iter();
-                beside.chain(plain).map(move |causes| (causes, noise.clone()))
+                let constants = self.constants(found, c, most).into_iter();
+                constants.chain(plain).map(move |causes| (causes, noise.clone()))
             })
             .collect();
         let before = self.merit(now, found);
