@@ -131,6 +131,7 @@ class Model:
         why = "trace=False"
         if trace:
             try:
+                # what the comparison teaches of a function is not what its use may begin with
                 read = law.Answers(declared, derivative, output, coordinate)
                 return cls.from_dict({**sampling, "model": {"equations": traced.equations(declared, read, discrete)}})
             except (Untraceable, InputError) as error:

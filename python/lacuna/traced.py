@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Dict, List, Mapping, Sequence, Tuple
+from typing import Any, Callable, Dict, List, Mapping, Sequence
 
 import numpy as np
 
@@ -101,20 +101,21 @@ def _check(declared: Declared, answers: Answers, read: Mapping[str, Sequence[Sym
     random = np.random.default_rng(0)
     size = np.resize([0.1, 1.0, 10.0], POINTS)
 
-    def around(group: str, key: str) -> Tuple[Any, Dict[str, Any]]:
-        rows = [float(e.get(key, 0.0)) + size * random.standard_normal(POINTS) for e in declared[group]]
-        array = np.array(rows).reshape(len(rows), POINTS)
-        return array, {e["name"]: row for e, row in zip(declared[group], array)}
+    def drawn(group: str, one: Callable[[Mapping[str, Any]], Any]) -> Any:
+        return np.array([one(entry) for entry in declared[group]]).reshape(len(declared[group]), POINTS)
 
-    (x, states), (u, inputs) = around("states", "initial"), around("inputs", "")
-    (w, entering), time = around("channels", ""), 0.7
-    theta = np.array(
-        [
-            np.clip(float(e.get("value", 0.0)) * (1 + 0.1 * random.standard_normal(POINTS)), e.get("min"), e.get("max"))
-            for e in declared["parameters"]
-        ]
-    ).reshape(len(declared["parameters"]), POINTS)
-    names = {**states, **inputs, **{e["name"]: row for e, row in zip(declared["parameters"], theta)}, "time": time}
+    def around(entry: Mapping[str, Any]) -> Any:
+        return float(entry.get("initial", 0.0)) + size * random.standard_normal(POINTS)
+
+    def near(entry: Mapping[str, Any]) -> Any:
+        value = float(entry.get("value", 0.0)) * (1 + 0.1 * random.standard_normal(POINTS))
+        return np.clip(value, entry.get("min", -np.inf), entry.get("max", np.inf))
+
+    x, u, w = (drawn(group, around) for group in ("states", "inputs", "channels"))
+    theta, time = drawn("parameters", near), 0.7
+    given = {"states": x, "inputs": u, "channels": w, "parameters": theta}
+    names = {e["name"]: row for group, rows in given.items() for e, row in zip(declared[group], rows)}
+    names["time"] = time
     if not declared["channels"]:
         w = np.zeros_like(x)
     for which, symbols in read.items():
@@ -125,7 +126,7 @@ def _check(declared: Declared, answers: Answers, read: Mapping[str, Sequence[Sym
             values = values_of([s.value for s in symbols], names)
             gains = [(i, c, g) for i, s in enumerate(symbols) for c, g in s.gains.items()]
             for (i, c, _), gain in zip(gains, values_of([g for _, _, g in gains], names)):
-                values[i] = values[i] + gain * entering[c]
+                values[i] = values[i] + gain * names[c]
         ours = np.array([np.broadcast_to(np.asarray(v, dtype=float), (POINTS,)) for v in values])
         both = np.isfinite(ours) & np.isfinite(theirs)
         if np.any(np.isfinite(ours) != np.isfinite(theirs)) or not np.any(both):

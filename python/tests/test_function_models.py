@@ -68,9 +68,11 @@ def test_a_discrete_one_and_one_without_channels(swing, trace):
 def test_it_is_diagnosed_and_the_cause_is_the_same(pendulum, swing, tmp_path):
     theirs = lacuna.diagnose(pendulum, swing, only=["coulomb_friction", "quadratic"], max_causes=1)
     ours = lacuna.diagnose(made(whole), swing, only=["coulomb_friction", "quadratic"], max_causes=1)
+    assert (ours.verdict, len(ours.causes)) == ("causes_found", 1)
     one, other = ours.causes[0], theirs.causes[0]
     assert (one.effect, one.into, one.of) == (other.effect, other.into, other.of) == ("coulomb_friction", "torque_on_arm", "rate")
     assert one.parameters[0].value == pytest.approx(other.parameters[0].value, rel=1e-6)
+    assert one.parameters[0].value == pytest.approx(-0.08, abs=0.02)
     # the extended model goes into a file and into other programs
     ours.extended.save(tmp_path / "extended.toml")
     after = lacuna.simulate(tmp_path / "extended.toml", swing)
