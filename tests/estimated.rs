@@ -89,10 +89,9 @@ of = "rate"
 effect.coulomb_friction = { level = -0.4, width = 0.05 }
 "#;
 
-/// A width that is narrower than a record tells stays where it is told from none, and leaves the others their errors.
-#[test]
-fn a_width_that_a_record_does_not_tell_spoils_no_other_number() {
-    let mut random = Random::new(8);
+/// A cart that sticks: its friction is steeper than its speed tells.
+fn stuck(seed: u64) -> Record {
+    let mut random = Random::new(seed);
     let (mut u, mut y, mut v, mut force) = (vec![], vec![], 0.0_f64, 0.0);
     for k in 0..1500 {
         force = if k % 10 == 0 { 2.0 * random.normal() } else { force };
@@ -102,15 +101,29 @@ fn a_width_that_a_record_does_not_tell_spoils_no_other_number() {
             v += 0.05 / 400.0 * (force - 0.6 * v - 0.5 * (v / 1e-4).tanh());
         }
     }
-    let record = Record::new(0.05).input("u", u).unwrap().output("y", y).unwrap();
+    Record::new(0.05).input("u", u).unwrap().output("y", y).unwrap()
+}
+
+/// A width that is narrower than the integrator follows, D L h / 2 (Hairer and Wanner, section IV.2), is none that a
+/// fit may take: a simulation that chatters has slopes, and errors, of its own.
+#[test]
+fn a_width_that_no_step_of_the_integrator_follows_spoils_no_other_number() {
     let system = parse(CART, "cart.toml", Format::Toml).unwrap();
-    let found = estimate(&system, std::slice::from_ref(&record), 0).unwrap();
-    let [c, level, width] = &found.parameters[..] else { panic!("{:?}", found.parameters) };
-    assert!((c.value - 0.6).abs() < 4.0 * c.std_error.unwrap(), "{c:?}");
-    assert!((level.value + 0.5).abs() < 4.0 * level.std_error.unwrap(), "{level:?}");
-    assert_eq!((level.unit.as_str(), width.unit.as_str()), ("N", "m/s"));
-    // the smallest width that is looked for is 1e-4 of the speed's RMS: narrower ones show where something sticks
-    assert!(width.value > 1e-5 && width.value < 0.05, "{width:?}");
+    let least = 0.5 * 0.05 / 20.0 * 0.5;
+    let mut record = Record::new(0.05);
+    for seed in 8..12 {
+        record = stuck(seed);
+        let found = estimate(&system, std::slice::from_ref(&record), 0).unwrap();
+        let [c, level, width] = &found.parameters[..] else { panic!("{:?}", found.parameters) };
+        assert_eq!((level.unit.as_str(), width.unit.as_str()), ("N", "m/s"));
+        for (own, value) in [(c, 0.6), (level, -0.5)] {
+            let error = own.std_error.unwrap();
+            assert!((own.value - value).abs() < 4.0 * error, "{seed}: {own:?}");
+            // noise of 0.01 on 1500 speeds tells them to a thousandth or so, and no better
+            assert!(error > 1e-4 && error < 2e-3, "{seed}: {own:?}");
+        }
+        assert!(width.value > 0.98 * least && width.value < 0.05, "{seed}: {width:?}");
+    }
     // what an estimate calls a number, it may be asked to hold
     let held = ["effects[0].width".to_string()];
     let found = estimate_with(&system, &[record], &held, 0, &()).unwrap();

@@ -5,6 +5,7 @@ mod of_effects;
 mod outcome;
 mod residuals;
 mod starts;
+mod steepness;
 
 use serde::Serialize;
 
@@ -16,6 +17,7 @@ use crate::statistics::deviation;
 use crate::system::System;
 use crate::watch::Watch;
 use of_effects::of_effects;
+use steepness::Steep;
 
 /// One estimated parameter.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -134,6 +136,8 @@ struct Fit<'a> {
     runs: Vec<Run<'a>>,
     keys: Vec<Key>,
     unknowns: Vec<Unknown>,
+    /// Laws that may be too steep for the integrator.
+    steep: Vec<Steep>,
     /// Spread of every output over all records.
     spreads: Vec<f64>,
     system: &'a System,
@@ -171,6 +175,7 @@ impl<'a> Fit<'a> {
                 known: known().collect(),
             });
         }
+        let steep = Steep::all(system, first);
         let (mut keys, mut unknowns, mut names) = (vec![], vec![], vec![]);
         for (p, parameter) in signals.parameters.iter().enumerate() {
             if parameter.fixed || held.contains(&parameter.name) {
@@ -222,6 +227,6 @@ impl<'a> Fit<'a> {
             // as many numbers as unknowns are met exactly, whatever the model
             return Err(EvaluateError::TooShort { record: source, samples, needed });
         }
-        Ok(Self { keys, unknowns, spreads, system, names, runs, source, watch, stretch })
+        Ok(Self { keys, unknowns, steep, spreads, system, names, runs, source, watch, stretch })
     }
 }

@@ -11,6 +11,7 @@ mod engine;
 mod error;
 mod exact;
 mod fits;
+mod gains;
 mod group;
 mod inputs;
 mod lane;
@@ -43,6 +44,7 @@ pub use sampling::{Hold, Integrator, Method, Sampling};
 pub use self::{
     drift::Drift,
     engine::{Jacobian, Transition},
+    gains::{entering, rate_along},
     lane::{Drive, Lane, Route, Track},
     placed::AlsoInto,
     plan::{Base, MOST_SUBSTEPS, Plan, Slot, Way},

@@ -1,15 +1,13 @@
 //! The instantaneous gain from what enters a model to what an effect can see: D = (dc/dx) G.
 //!
-//! One unit of w in a channel changes the derivatives by its column of G(x, u; theta), and a coordinate
-//! c(x, u; theta) at the rate D = (dc/dx) G (the first Markov parameter of that pair: Kailath, "Linear
-//! Systems", 1980). It is asked at several points of the record, for one answer that holds along it.
+//! It is asked at several points of the record, for one answer that holds along it (`system::entering`).
 
 use std::sync::Arc;
 
-use crate::model::probe::{Along, Point, slope, unit};
-use crate::model::{Ask, StateSpaceModel, copied};
+use crate::model::probe::Point;
+use crate::model::{StateSpaceModel, copied};
 use crate::statistics::median;
-use crate::system::{Base, Origin};
+use crate::system::{Base, entering, rate_along};
 
 /// A model at the points that are asked.
 pub(crate) struct Pushes {
@@ -54,29 +52,12 @@ impl Pushes {
 
     /// Change of the derivatives by one unit into a target.
     fn column(&self, target: usize, point: &Point) -> Vec<f64> {
-        let (law, base) = (self.model.as_ref(), &self.base);
-        let n = base.sizes;
-        match base.targets.entries[target].1 {
-            Origin::Own(i) if base.declared_channels => {
-                slope(law, n, Ask::Derivative, point, Along::Channel(&unit(n.w, i)))
-            }
-            Origin::Own(i) => unit(n.x, i),
-            Origin::Input(i) => slope(law, n, Ask::Derivative, point, Along::Input(&unit(n.u, i))),
-            _ => vec![0.0; n.x],
-        }
+        entering(self.model.as_ref(), &self.base, target, point)
     }
 
     /// The rate at which a source changes along a change of the derivatives.
     fn rate(&self, source: usize, point: &Point, column: &[f64]) -> f64 {
-        let (law, base) = (self.model.as_ref(), &self.base);
-        let n = base.sizes;
-        match base.sources.entries[source].1 {
-            Origin::State(i) => column[i],
-            Origin::Own(i) if !base.declared_coordinates => column[i],
-            Origin::Own(i) => slope(law, n, Ask::Coordinates, point, Along::State(column))[i],
-            Origin::Output(o) => slope(law, n, Ask::Output, point, Along::State(column))[o],
-            _ => 0.0,
-        }
+        rate_along(self.model.as_ref(), &self.base, source, point, column)
     }
 }
 

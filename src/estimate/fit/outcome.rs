@@ -54,11 +54,13 @@ impl Fit<'_> {
             let mut changes = undetermined.iter().flat_map(|combination| &combination.changes);
             changes.any(|(free, _)| free == name)
         };
+        let point = self.followed(&done.point);
         let mut parameters = vec![];
         for (i, (name, unit)) in self.names.iter().enumerate() {
             let u = &self.unknowns[i];
-            let value = done.point[i];
-            let at_bound = value <= u.bounds.0 || value >= u.bounds.1;
+            let value = point[i];
+            let is_too_steep = done.point[i] < value;
+            let at_bound = value <= u.bounds.0 || value >= u.bounds.1 || is_too_steep;
             let error = covariance.as_ref().map(|c| c[(i, i)].sqrt() * u.scale);
             // a change as large as the value that moves nothing leaves nothing to know it by
             let size = crate::statistics::rms(&scaled[i]);
@@ -77,7 +79,7 @@ impl Fit<'_> {
             });
         }
         Ok(Estimate {
-            system: self.with_values(&done.point)?,
+            system: self.with_values(&point)?,
             parameters,
             undetermined,
             nrmse: (before.sqrt(), variance.sqrt()),

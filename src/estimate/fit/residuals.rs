@@ -7,7 +7,30 @@ use crate::optimise::{Levenberg, Settings, Unknown};
 use crate::system::Lane;
 
 impl Fit<'_> {
+    /// A point with the widths of friction that the integrator follows.
+    pub(super) fn followed(&self, point: &[f64]) -> Vec<f64> {
+        let mut values = self.runs[0].plan.effect_values();
+        let own = || {
+            let number = |(at, key): (usize, &Key)| match *key {
+                Key::EffectParameter(k) => Some((at, k)),
+                _ => None,
+            };
+            self.keys.iter().enumerate().filter_map(number)
+        };
+        own().for_each(|(at, k)| values[k] = point[at]);
+        let mut followed = point.to_vec();
+        for steep in &self.steep {
+            let least = steep.least(&values);
+            let width = own().find(|&(_, k)| k == steep.width);
+            if let Some((at, _)) = width {
+                followed[at] = followed[at].max(least);
+            }
+        }
+        followed
+    }
+
     pub(super) fn lane(&self, point: &[f64], r: usize) -> Lane {
+        let point = &self.followed(point);
         let run = &self.runs[r];
         let mut lane = Lane {
             theta: run.plan.signals.theta(),
