@@ -1,6 +1,7 @@
 //! All causes of a record: one place after the other, each with its laws.
 //!
 //! ```text
+//! causes that are given (`given.rs`), none as a rule
 //! repeat  the most probable place and its laws, given the causes before (`places.rs`)
 //!         all causes fitted together, the noise anew
 //! until nothing more is probable
@@ -19,6 +20,7 @@ use nalgebra::DMatrix;
 use super::error::LikelihoodError;
 use super::explanation::{Explanation, NamedCause};
 use super::found::{Found, dealt, joined};
+use super::given::{Begun, Given};
 use super::held_out::refutes;
 use super::hypothesis::{Hypothesis, names};
 use super::noise::{Layout, Noise};
@@ -30,35 +32,24 @@ use super::tangent::Site;
 use super::weigh::{Weighed, plainest};
 
 impl Predictor {
-    /// What explains the records, at most `most` causes; `held` are samples that nothing is fitted to
-    /// until causes are chosen, and that may refute them. `noise` is that of the model without causes,
-    /// where it is known. `stop` is asked between causes.
+    /// What explains the records, at most `most` causes, from causes that are given on; `held` are samples
+    /// that nothing is fitted to until causes are chosen, and that may refute them. `noise` is that of the
+    /// model with the given causes alone, where it is known. `stop` is asked between causes.
     ///
     /// # Errors
     ///
     /// As [`Predictor::fit_noise`].
     pub fn explain(
         &self,
-        most: usize,
+        (given, most): (&Given, usize),
         held: &[Range<usize>],
         noise: Option<&Noise>,
         stop: &dyn Fn() -> bool,
     ) -> Result<Explanation, LikelihoodError> {
         let mut fit = self.blinded(held);
-        let first = match noise {
-            Some(noise) => fit.renewed(&fit.model, noise, 2)?,
-            None => fit.choose(&fit.model)?,
-        };
-        fit.settle(&first.run.path, &first.noise);
-        let first = fit.renewed(&fit.model, &first.noise, 2)?;
-        let null = Hypothesis {
-            parts: vec![],
-            theta: fit.model.theta.clone(),
-            noise: first.noise,
-            log_likelihood: first.log_likelihood,
-        };
-        let mut nothing = 1.0;
-        let (mut found, mut now) = (vec![], null.clone());
+        let Begun { null, mut found, mut now } = fit.first_hypothesis(given, noise)?;
+        let gain = fit.merit(&now, &found) - fit.merit(&null, &[]);
+        let mut nothing = if found.is_empty() { 1.0 } else { 1.0 / (1.0 + gain.exp()) };
         loop {
             (found, now) = fit.one_by_one((found, now), most, stop, &mut nothing)?;
             let mut exchanged =

@@ -9,7 +9,7 @@ use super::kalman::Kalman;
 use super::noise::{Layout, Noise};
 use super::parametrised::Model;
 use super::path::Path;
-use crate::system::{Drive, System, Transition};
+use crate::system::{Drive, Origin, System, Transition};
 
 /// Degrees of freedom of the tail that scores a gated innovation: heavy, with a finite mean and variance.
 const TAIL: f64 = 3.0;
@@ -74,6 +74,10 @@ pub(crate) fn follow(
     let sources = if wanted.seen { model.plan.sources.entries.len() } else { 0 };
     let mut path = blank((n, nf, ny), (nt, sources), len, drive, start);
     path.d.resize(if direct { len * ny * nf } else { 0 }, 0.0);
+    path.unread.resize(if wanted.seen { len * ny } else { 0 }, 0.0);
+    let entries: Vec<Option<usize>> =
+        (0..ny).map(|o| model.plan.sources.at(Origin::Output(o))).collect();
+    let mut seen = vec![0.0; sources];
     let mut kalman = Kalman::new(&layout);
     let mut to = plant.jacobian();
     let (mut x, mut slow) = (vec![0.0; n], vec![0.0; layout.len()]);
@@ -98,6 +102,11 @@ pub(crate) fn follow(
             plant.place(&x);
             let (y, c) = (&mut path.predicted[k * ny..][..ny], &mut path.c[k * ny * n..][..ny * n]);
             plant.observe(k, y, c, &mut path.c_theta[k * ny * nt..][..ny * nt]);
+            if wanted.seen {
+                plant.see(&mut seen);
+                let unread = path.unread[k * ny..][..ny].iter_mut();
+                unread.zip(&entries).for_each(|(to, e)| *to = e.map_or(f64::NAN, |e| seen[e]));
+            }
             if direct {
                 plant.direct(&mut path.d[k * ny * nf..][..ny * nf]);
             }
@@ -197,6 +206,7 @@ fn blank(
         theta: zeros(n * nt),
         c_theta: zeros(ny * nt),
         seen: zeros(sources),
+        unread: vec![],
         as_before: vec![],
     }
 }

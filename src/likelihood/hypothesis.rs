@@ -12,11 +12,11 @@ use super::follow::{Followed, Wanted};
 use super::laws::Law;
 use super::noise::Noise;
 use super::parametrised::Model;
-use super::predictor::{Predictor, column};
+use super::predictor::Predictor;
 use super::replay::Pass;
 use super::tangent::{Site, gram};
 use crate::effect::Role;
-use crate::system::{Origin, Placed, Plan};
+use crate::system::{Placed, Plan};
 
 /// Iterations at most between two estimates of the noise, dampings tried in each, and the change of
 /// log L at which a fit is settled.
@@ -214,34 +214,6 @@ impl Predictor {
             }
         }
         Some((best, run))
-    }
-
-    /// One column per free number of a hypothesis.
-    pub(crate) fn slopes(&self, of: &Hypothesis, run: &Followed) -> Vec<(Site, Vec<f64>)> {
-        let path = &run.path;
-        let sources = &self.model.plan.sources.entries;
-        let entries = sources.len();
-        let own_path = |output: usize, e: usize| sources[e].1 == Origin::Output(output);
-        let mut columns = vec![];
-        for part in &of.parts {
-            match part {
-                Part::Parameter(p) => {
-                    columns.push((Site::Parameter(*p), vec![1.0; path.len]));
-                }
-                Part::Law { site, source, law } => {
-                    let z = match (site, source) {
-                        (_, None) => vec![1.0; path.len],
-                        (Site::Output(o), Some(e)) if own_path(*o, *e) => {
-                            column(&path.predicted, path.outputs, *o)
-                        }
-                        (_, Some(e)) => column(&path.seen, entries, *e),
-                    };
-                    let load = law.load.map(|e| column(&path.seen, entries, e)).unwrap_or_default();
-                    columns.extend(law.slopes(&z, &load).into_iter().map(|slope| (*site, slope)));
-                }
-            }
-        }
-        columns
     }
 
     /// The hypothesis after a step, within the bounds of the parameters.

@@ -28,12 +28,14 @@ mod explanation;
 mod follow;
 mod forgetting;
 mod found;
+mod given;
 mod held_out;
 mod hypothesis;
 mod intensities;
 mod kalman;
 mod lacking;
 mod laws;
+mod linearisations;
 mod local_level;
 mod missing;
 mod model;
@@ -51,8 +53,10 @@ mod rows;
 mod scope;
 mod screen;
 mod select;
+mod sensor_path;
 mod sets;
 mod share;
+mod slopes;
 mod smoother;
 mod std_error;
 mod steady;
@@ -71,6 +75,7 @@ pub use ranked::RankedPlaces;
 #[doc(hidden)]
 pub use self::{
     explanation::{Explanation, NamedCause},
+    given::Given,
     held_out::refutes,
     missing::Explained,
     model::{Fitted, NoiseModel},

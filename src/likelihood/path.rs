@@ -32,6 +32,8 @@ pub(crate) struct Path {
     pub states: Vec<f64>,
     /// Predicted outputs, without wander.
     pub predicted: Vec<f64>,
+    /// Predicted outputs before the laws on their paths, where sources are asked for.
+    pub unread: Vec<f64>,
     /// Variances of the states at the start of a segment.
     pub p0: Vec<f64>,
     /// Next states and outputs along parameters, where asked for.

@@ -41,13 +41,16 @@ pub(crate) struct Chosen {
 }
 
 impl Predictor {
-    /// The noise that the data call for under a model, from measurement noise alone.
-    pub(crate) fn choose(&self, model: &Model) -> Result<Chosen, LikelihoodError> {
-        let tracking = self.tracking(model)?;
-        let mut chosen = self.renewed(model, &self.selected(&tracking), RENEWED)?;
+    /// The noise that the data call for under a model, about one linearisation, from measurement noise alone.
+    pub(super) fn chosen_on(
+        &self,
+        model: &Model,
+        tracking: &Path,
+    ) -> Result<Chosen, LikelihoodError> {
+        let mut chosen = self.renewed(model, &self.selected(tracking), RENEWED)?;
         if !chosen.log_likelihood.is_finite() {
             // the path of the selected noise leaves the numbers: stay with one that tracks
-            chosen = self.renewed(model, &self.tracking_noise(&tracking), RENEWED)?;
+            chosen = self.renewed(model, &self.tracking_noise(tracking), RENEWED)?;
         }
         let fewer = self.pruned(&chosen.run.path, chosen.noise.clone());
         if fewer != chosen.noise {
@@ -98,40 +101,10 @@ impl Predictor {
         self.measured.iter().filter(|y| y.is_finite()).count().max(1) as f64
     }
 
-    /// Noise under which the filter follows the data closely: a good path to linearise about.
-    fn tracking_noise(&self, path: &Path) -> Noise {
-        let mut noise = self.white(self.spread.iter().map(|s| 1e-4 * s * s + tiny()).collect());
-        for (q, scale) in noise.white.iter_mut().zip(path.force_scales()) {
-            *q = 0.1 * scale * scale;
-        }
-        noise
-    }
-
-    /// The path of a filter that follows the data closely.
-    pub(crate) fn tracking(&self, model: &Model) -> Result<Path, LikelihoodError> {
-        let wide = self.white(self.spread.iter().map(|s| s * s + tiny()).collect());
-        let mut run = self.run(model, &wide, Wanted::default())?;
-        for _ in 0..2 {
-            let noise = self.tracking_noise(&run.path);
-            let next = self.run(model, &noise, Wanted::default())?;
-            if next.diverged_at.is_some() {
-                break;
-            }
-            run = next;
-        }
-        match run.diverged_at {
-            None => Ok(run.path),
-            Some(sample) => {
-                let time = sample as f64 * self.model.plan.sampling_time;
-                Err(LikelihoodError::Diverges { sample, time })
-            }
-        }
-    }
-
     /// Forward selection on a path.
     fn selected(&self, path: &Path) -> Noise {
         let penalty = 0.5 * self.observed().ln();
-        let start = self.white(self.spread.iter().map(|s| s * s + tiny()).collect());
+        let start = self.wide_noise();
         let (mut noise, mut value) = nearly_most_likely(path, &start, &start.components());
         let scales = path.force_scales();
         for _ in 0..MOST {
@@ -286,9 +259,4 @@ fn pole(noise: &Noise, component: Component) -> f64 {
         Component::Wander(o) => noise.wander[o].pole,
         _ => 1.0,
     }
-}
-
-/// A variance that is none, but keeps everything finite.
-fn tiny() -> f64 {
-    1e-30
 }

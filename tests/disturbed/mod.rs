@@ -10,11 +10,12 @@ pub mod plants;
 
 mod bare;
 mod more;
+mod rectified;
 mod revolving;
 
 use lacuna::data::{Record, Signal};
 use lacuna::diagnose::{Diagnosis, Finding};
-use lacuna::likelihood::Predictor;
+use lacuna::likelihood::{Given, Predictor};
 use lacuna::system::System;
 
 use self::more::{FAN, VESSELS};
@@ -56,7 +57,7 @@ fn cases() -> Vec<Case> {
         white: white.to_vec(),
         measurement: measurement.to_vec(),
         wander: wander.to_vec(),
-        slow: vec![],
+        ..Sizes::default()
     };
     vec![
         Case {
@@ -244,7 +245,7 @@ fn causes_are_explained_together_and_the_rest_is_noise() {
     let record = simulate(&machine, &excitation(3000, 0.05, 1.5, 8), &noise, 9);
     let predictor = Predictor::new(&system(OSCILLATOR), &[record]).unwrap();
     let held = std::iter::once(2200..3000).collect::<Vec<_>>();
-    let found = predictor.explain(5, &held, None, &|| false).unwrap();
+    let found = predictor.explain((&Given::default(), 5), &held, None, &|| false).unwrap();
     let said = format!("{found:?}");
     assert_eq!((found.causes.len(), found.withdrawn.len()), (2, 0), "{said}");
     for (of, name, value) in [("rate", "coulomb_friction", -0.4), ("place", "cubic", -4.0)] {

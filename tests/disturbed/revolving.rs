@@ -41,8 +41,7 @@ fn friction_is_named_where_a_free_run_predicts_nothing() {
     let friction = "into = \"joint\"\nof = \"rate\"\n\
         effect.coulomb_friction = { level = -0.12, width = 0.02 }";
     let machine = with(PENDULUM, friction);
-    let noise =
-        Sizes { white: vec![0.05, 0.0], measurement: vec![0.01], wander: vec![], slow: vec![] };
+    let noise = Sizes { white: vec![0.05, 0.0], measurement: vec![0.01], ..Sizes::default() };
     let record = simulate(&machine, &steps(2500, 1), &noise, 101);
     let angle = &record.outputs[0].values;
     let turns = angle.iter().fold(0.0, |most: f64, y| most.max(y.abs())) / std::f64::consts::TAU;

@@ -22,7 +22,9 @@ pub(crate) struct Coloured {
     pub(super) noise: Vec<OutputNoise>,
     pub(super) tails: Vec<Option<Tails>>,
     pub(super) variances: Vec<Option<VarianceFunction>>,
-    /// Roots of the variances of the samples that it was estimated from; empty where all are 1.
+    /// Whether it stands before the sensors: their slopes' signs are taken off first.
+    pub(super) before_sensors: bool,
+    /// Roots of the variances of the samples that it was estimated from, with those signs; empty where all are 1.
     pub(super) deviations: Vec<f64>,
     /// Roots of the weights of the same samples; empty where all are 1.
     pub(super) weights: Vec<f64>,
@@ -31,14 +33,19 @@ pub(crate) struct Coloured {
 impl Coloured {
     /// Takes these variance functions on, at what a model says that leaves `residual`.
     pub(super) fn vary(&mut self, variances: Vec<Option<VarianceFunction>>, residual: &[f64]) {
-        let Stretches { measured, time, .. } = &self.stretches;
+        let Stretches { measured, time, signs, .. } = &self.stretches;
+        let signs = signs.as_ref().filter(|_| self.before_sensors);
+        let sign = |k: usize| signs.map_or(1.0, |signs| signs[k]);
         self.deviations = vec![];
         if variances.iter().any(Option::is_some) {
             let n = time.len();
             let at = |(k, (y, r)): (usize, (&f64, &f64))| {
-                variances[k / n].as_ref().map_or(1.0, |v| v.deviation(y - r, time[k % n]))
+                let variance = variances[k / n].as_ref();
+                sign(k) * variance.map_or(1.0, |v| v.deviation(y - r, time[k % n]))
             };
             self.deviations = measured.iter().zip(residual).enumerate().map(at).collect();
+        } else if let Some(signs) = signs {
+            self.deviations = signs.to_vec();
         }
         self.variances = variances;
     }
@@ -61,7 +68,7 @@ impl Coloured {
         let length = self.stretches.per_output.max(1);
         let of = self.deviations.chunks(length).nth(o).unwrap_or_default();
         let known = self.stretches.counts[o] / length as f64;
-        of.iter().map(|s| s.ln()).sum::<f64>() * known
+        of.iter().map(|s| s.abs().ln()).sum::<f64>() * known
     }
 
     /// A filter of each output over its part of a series.
@@ -95,7 +102,7 @@ impl Whitener for Coloured {
     }
 
     fn is_coloured(&self) -> bool {
-        self.remembers() || !self.weights.is_empty() || !self.deviations.is_empty()
+        self.remembers() || !self.weights.is_empty() || self.variances.iter().any(Option::is_some)
     }
 
     fn remembers(&self) -> bool {
@@ -104,6 +111,7 @@ impl Whitener for Coloured {
 
     fn over(&self, stretches: &Stretches, residual: &[f64]) -> Estimated {
         let mut of = stretches.filter(self.noise.clone());
+        of.before_sensors = self.before_sensors && stretches.signs.is_some();
         of.vary(self.variances.clone(), residual);
         let white = of.whiten(residual);
         let (of, log_likelihood) = stretches.with_tails(of, &white, residual);

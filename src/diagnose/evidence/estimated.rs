@@ -18,6 +18,7 @@ impl Stretches {
             tails: vec![None; noise.len()],
             variances: vec![None; noise.len()],
             noise,
+            before_sensors: false,
             deviations: vec![],
             weights: vec![],
         }
@@ -27,6 +28,17 @@ impl Stretches {
     pub fn normal(&self, residual: &[f64]) -> Coloured {
         let one = |(r, count): (&[f64], f64)| OutputNoise::estimate(r, &self.spans, count);
         self.filter(self.per_output(residual).map(one).collect())
+    }
+
+    /// The same before the sensors, where the slope of one changes its sign.
+    fn before_sensors(&self, residual: &[f64]) -> Option<Coloured> {
+        self.signs.as_ref()?;
+        let one = vec![None; self.counts.len()];
+        let mut of =
+            Coloured { before_sensors: true, tails: vec![None; one.len()], ..self.filter(vec![]) };
+        of.vary(one, residual);
+        of.noise = self.normal(&of.even(residual)).noise;
+        Some(of)
     }
 
     /// A normal disturbance with the variances that follow signals or time, as `white`, what it leaves of
@@ -51,7 +63,13 @@ impl Stretches {
     /// The disturbance of a residual by its own type, and the logarithm of its likelihood, its own
     /// numbers paid for.
     pub fn coloured(&self, residual: &[f64]) -> (Coloured, f64) {
-        let even = self.normal(residual);
+        let even = self.of_any_variance(self.normal(residual), residual);
+        let before = self.before_sensors(residual);
+        better(even, before.map(|of| self.of_any_variance(of, residual)))
+    }
+
+    /// A normal disturbance, or the same with variances that follow signals or time, each with its tails.
+    fn of_any_variance(&self, even: Coloured, residual: &[f64]) -> (Coloured, f64) {
         let white = even.whiten(residual);
         let varying = self.varying(&even, residual, &white);
         let even = self.with_tails(even, &white, residual);
@@ -59,10 +77,7 @@ impl Stretches {
             let white = of.whiten(residual);
             self.with_tails(of, &white, residual)
         });
-        match other {
-            Some(other) if other.1 > even.1 => other,
-            _ => even,
-        }
+        better(even, other)
     }
 
     /// A normal disturbance with the tails of what it leaves, `white`, and the logarithm of its
@@ -91,6 +106,14 @@ impl Stretches {
             of.weights = white.chunks(length).zip(&of.tails).flat_map(weigh).collect();
         }
         (of, normal + gain)
+    }
+}
+
+/// The more probable of one and another, if any.
+fn better(one: (Coloured, f64), other: Option<(Coloured, f64)>) -> (Coloured, f64) {
+    match other {
+        Some(other) if other.1 > one.1 => other,
+        _ => one,
     }
 }
 

@@ -3,7 +3,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::fit::problem::{Part, Problem};
+use super::sensor_sign::sensor_signs;
+use crate::fit::problem::{Model, Part, Problem};
 
 /// Stretches of a part of a record, and what was measured there.
 #[derive(Debug, Clone)]
@@ -16,6 +17,8 @@ pub(crate) struct Stretches {
     /// What was measured, in the units of the residuals, and the number of each sample.
     pub(super) measured: Arc<Vec<f64>>,
     pub(super) time: Arc<Vec<f64>>,
+    /// Signs of the sensors' slopes, where one of them changes it (`super::sensor_sign`).
+    pub(super) signs: Option<Arc<Vec<f64>>>,
 }
 
 impl Stretches {
@@ -40,7 +43,20 @@ impl Stretches {
             counts: outputs.clone().map(|o| known(o).count() as f64).collect(),
             measured: Arc::new(outputs.flat_map(measured).collect()),
             time: Arc::new(problem.samples(part).map(|k| k as f64).collect()),
+            signs: None,
         }
+    }
+
+    /// The same of a part that is read through the sensors of a model.
+    pub fn through_sensors_of(problem: &Problem<'_>, model: &Model, part: Part) -> Self {
+        let signs = sensor_signs(problem, model);
+        let one = |signs: &Option<Vec<f64>>| -> Vec<f64> {
+            let at = |k: usize| signs.as_ref().map_or(1.0, |signs| signs[k]);
+            problem.samples(part).map(at).collect()
+        };
+        let is_turned = signs.iter().any(Option::is_some);
+        let signs = is_turned.then(|| Arc::new(signs.iter().flat_map(one).collect()));
+        Self { signs, ..Self::new(problem, part) }
     }
 
     pub(super) fn per_output<'r>(&self, r: &'r [f64]) -> impl Iterator<Item = (&'r [f64], f64)> {
@@ -63,6 +79,7 @@ impl Stretches {
             counts: vec![at as f64],
             measured: Arc::default(),
             time: Arc::new((0..at).map(|k| k as f64).collect()),
+            signs: None,
         }
     }
 }

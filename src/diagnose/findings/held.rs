@@ -52,7 +52,7 @@ impl Context<'_, '_> {
         base.added = chosen.fitted.model.added[..chosen.fitted.model.known()].to_vec();
         let models: Vec<Model> = self.informative(&base)?;
         let nuisance = Nuisance::new(self.problem, self.nominal);
-        let noise = Stretches::new(self.problem, Part::All);
+        let noise = Stretches::through_sensors_of(self.problem, &chosen.fitted.model, Part::All);
         let worth = |residual: &[f64], numbers: usize| {
             let spent = 0.5 * numbers as f64 * (residual.len() as f64).ln();
             noise.estimate(residual).log_likelihood - spent

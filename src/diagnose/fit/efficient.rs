@@ -45,7 +45,9 @@ pub(crate) fn efficient(
     if nuisance.segments >= MANY {
         return None;
     }
-    let by = Stretches::new(problem, Part::All).estimate(&plain.residuals).whitener;
+    let by = Stretches::through_sensors_of(problem, &plain.model, Part::All)
+        .estimate(&plain.residuals)
+        .whitener;
     if !by.is_coloured() {
         return None;
     }

@@ -2,7 +2,7 @@
 
 use std::cell::Cell;
 
-use crate::likelihood::{Explanation, NoiseModel, Predictor};
+use crate::likelihood::{Explanation, Given, Noise, NoiseModel, Predictor};
 
 use super::compete::{CLEARLY, Rivals, extended_by, left, predictor};
 use super::conversion::{carried_over, finished};
@@ -11,9 +11,9 @@ use crate::candidates::candidate::Wire;
 use crate::candidates::library::{Allowed, library};
 use crate::criteria::LEAVES;
 use crate::error::DiagnoseError;
-use crate::evidence::Choices;
+use crate::evidence::{Choices, turns_a_sensor};
 use crate::fit::finished::Finished;
-use crate::fit::problem::{Added, Model, Part, Problem};
+use crate::fit::problem::{Added, Grain, Model, Part, Problem};
 use crate::fit::refit::MANY;
 use crate::prepare::input_dependence::DEPENDS;
 use crate::prepare::operating_range::Nominal;
@@ -25,6 +25,9 @@ use crate::watch::Watch;
 const WHITE: f64 = 3.0;
 /// Share of the mean square that a free run leaves for which an answer has to account by itself.
 const ACCOUNTED: f64 = 0.95;
+
+/// Causes that a search by innovations begins with, at most: each is left out in turn.
+const BEGUN_WITH: usize = 12;
 
 /// An answer and what it was weighed against.
 type Answer = (Finished, Option<Finished>);
@@ -208,13 +211,22 @@ fn by_innovations(
         NoiseModel::Predictor(noise) => Some(noise),
         NoiseModel::FreeRun(_) => None,
     });
-    let found = base.explain(most, &held, noise, &|| watch.stopped()).ok()?;
     let known = library(problem, &prepared.nominal, &prepared.start, vec![], allowed, &());
     let of_answer = rivals.best() - taken(&base, answer, Choices::of(&known).laws);
-    let none = found.causes.is_empty() && is_bare;
-    if !none && found.criterion() <= of_answer {
-        return None;
-    }
+    let explained = |given: &Given, noise: Option<&Noise>| {
+        base.explain((given, most), &held, noise, &|| watch.stopped()).ok()
+    };
+    let is_better = |found: &Explanation| found.criterion() > of_answer;
+    // innovations tell nothing of a sensor whose branch they do not know
+    let from_nothing = match turns_a_sensor(problem, &answer.fitted.model) {
+        true => None,
+        false => explained(&Given::default(), noise),
+    };
+    let none = is_bare && from_nothing.as_ref().is_some_and(|found| found.causes.is_empty());
+    let found = match from_nothing.filter(|found| none || is_better(found)) {
+        Some(found) => found,
+        None => explained(&given(problem, answer)?, None).filter(is_better)?,
+    };
     let mut answer = finished(prepared, &known, (&base, &found))?;
     answer.dependence = depends(prepared, (&base, &found), &answer)?;
     if none && answer.dependence > DEPENDS {
@@ -225,6 +237,25 @@ fn by_innovations(
     let both = left(problem, &prepared.start).zip(left(problem, &answer.fitted.model));
     let is_no_worse = both.is_some_and(|(before, after)| (after / before).powi(2) <= LEAVES);
     (is_no_worse || !base.forgets().unwrap_or(true)).then_some(answer)
+}
+
+/// The causes of an answer and the parameters that it moved; `None` where there are none, or too many.
+fn given(problem: &Problem<'_>, answer: &Finished) -> Option<Given> {
+    let model = &answer.fitted.model;
+    let theta = model.parameters();
+    let step = problem.step(Grain::Fine);
+    let law = |added: &Added| {
+        let Added { cause, parameters } = added;
+        cause.placed(&cause.clipped(parameters, step, &theta))
+    };
+    let nominal = problem.baseline().theta;
+    let moved =
+        |(p, (value, nominal)): (usize, (&f64, &f64))| (value != nominal).then_some((p, *value));
+    let given = Given {
+        laws: model.added[model.known()..].iter().filter_map(law).collect(),
+        parameters: theta.iter().zip(&nominal).enumerate().filter_map(moved).collect(),
+    };
+    (1..=BEGUN_WITH).contains(&(given.laws.len() + given.parameters.len())).then_some(given)
 }
 
 /// The score of `unforeseen` of an explanation.

@@ -37,6 +37,8 @@ pub(super) struct Study<'a, 'b> {
     pub held: Nuisance,
     pub free: Nuisance,
     pub disturbance: Stretches,
+    /// The model that was stood on, through whose sensors the records are read.
+    pub seen_by: Option<Model>,
     pub beam: Beam,
     pub candidates: Vec<Arc<Candidate>>,
     pub choices: Choices,
@@ -73,6 +75,7 @@ impl<'a, 'b> Study<'a, 'b> {
             held,
             free,
             disturbance,
+            seen_by: None,
             beam: Beam::default(),
             candidates: vec![],
             choices: Choices::default(),
@@ -161,7 +164,7 @@ impl<'a, 'b> Study<'a, 'b> {
         let problem = &*self.problem;
         let Some(y) = problem.simulate(&fit.model, Grain::Coarse) else { return 0.0 };
         let residual = problem.residual(&y, Part::All);
-        let all = Stretches::new(problem, Part::All);
+        let all = Stretches::through_sensors_of(problem, &fit.model, Part::All);
         let innovations = fit.noise.over(&all, &residual).whitener.whiten(&residual);
         let n = problem.samples(Part::All).count().max(1);
         // as measured where there are no innovations
@@ -193,12 +196,21 @@ impl<'a, 'b> Study<'a, 'b> {
         } else {
             self.problem.recorrect(model);
         }
+        self.seen_by = Some(model.clone());
         self.judge_again();
+    }
+
+    /// Stretches of a part of the records, read through the sensors of the model that was stood on.
+    pub fn stretches(&self, part: Part) -> Stretches {
+        match &self.seen_by {
+            Some(model) => Stretches::through_sensors_of(self.problem, model, part),
+            None => Stretches::new(self.problem, part),
+        }
     }
 
     /// Judges the leading fits by the data and steps as they are now.
     fn judge_again(&mut self) {
-        self.disturbance = Stretches::new(self.problem, Part::Fit);
+        self.disturbance = self.stretches(Part::Fit);
         let keys: Vec<SetKey> = self.beam.within(JUDGED_AGAIN).map(Fit::key).collect();
         let model = |key: &SetKey| self.beam.get(key).map(|fit| &fit.model);
         // what is known of the whole record is known of the part that is fitted

@@ -20,7 +20,7 @@ const ITERATIONS: usize = 8;
 /// A set that has a refuted cause is no hypothesis any more, and probabilities are those of the others.
 pub(super) fn vetoed(study: &mut Study<'_, '_>) -> Option<(Fit, Vec<Added>)> {
     let mut withdrawn: Vec<Added> = vec![];
-    let held = Stretches::new(study.problem, Part::Choose);
+    let held = study.stretches(Part::Choose);
     let mut fit = study.beam.headline()?.clone();
     while let Some(index) = refuted(study, &fit, &held) {
         let gone = fit.model.added[index].clone();

@@ -8,8 +8,13 @@ use crate::{Component, NoiseModel, Predictor};
 
 /// A record of so many samples, as an accelerometer sees it, and noise of every kind.
 fn noisy(len: usize) -> (Path, Noise) {
-    let sizes =
-        Sizes { white: vec![0.3], measurement: vec![0.02], slow: vec![0.05], wander: vec![0.005] };
+    let sizes = Sizes {
+        white: vec![0.3],
+        measurement: vec![0.02],
+        slow: vec![0.05],
+        wander: vec![0.005],
+        fades: 0.0,
+    };
     let system = system(&accelerometer());
     let record = simulate(&system, &excitation(len, 0.05, 1.0, 2), &sizes, 3);
     let predictor = Predictor::new(&system, &[record]).unwrap();

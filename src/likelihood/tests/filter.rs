@@ -80,6 +80,7 @@ pub fn noisy(len: usize) -> (Path, Noise) {
         measurement: vec![0.01, 0.02],
         wander: vec![0.0, 0.005],
         slow: vec![0.0, 0.1],
+        fades: 0.0,
     };
     let record = simulate(&system, &excitation(len, 0.02, 20.0, 2), &sizes, 3);
     let predictor = Predictor::new(&system, &[record]).unwrap();

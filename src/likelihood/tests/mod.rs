@@ -12,4 +12,5 @@ mod places;
 mod plants;
 mod smoother;
 mod stationary;
+mod steady;
 mod tangent;

@@ -37,7 +37,7 @@ fn sizes(plant: usize, kind: usize) -> Sizes {
         _ => {}
     }
     let wander = if kind == 2 { measurement.iter().map(|r| 0.3 * r).collect() } else { vec![] };
-    Sizes { white, measurement, wander, slow: vec![] }
+    Sizes { white, measurement, wander, ..Sizes::default() }
 }
 
 fn record(plant: usize, hidden: bool, kind: usize, n: usize, seed: u64) -> Record {

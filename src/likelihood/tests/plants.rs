@@ -81,6 +81,8 @@ pub fn excitation(n: usize, step: f64, size: f64, seed: u64) -> Vec<f64> {
 pub struct Sizes {
     pub white: Vec<f64>,
     pub slow: Vec<f64>,
+    /// Share of a slow force that is gone after a sample; 0: it walks.
+    pub fades: f64,
     pub measurement: Vec<f64>,
     pub wander: Vec<f64>,
 }
@@ -132,7 +134,7 @@ pub fn simulate_by(
         }
         let mut w = vec![0.0; nf];
         for c in 0..nf {
-            slow[c] += get(&sizes.slow, c) * random.normal();
+            slow[c] += -sizes.fades * slow[c] + get(&sizes.slow, c) * random.normal();
             w[c] = slow[c] + get(&sizes.white, c) * random.normal();
         }
         let mut direct = vec![0.0; ny * nf];
