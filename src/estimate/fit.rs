@@ -136,7 +136,7 @@ struct Fit<'a> {
     runs: Vec<Run<'a>>,
     keys: Vec<Key>,
     unknowns: Vec<Unknown>,
-    /// Laws that may be too steep for the integrator.
+    /// Laws of which a width moves that may become too small for the integrator.
     steep: Vec<Steep>,
     /// Spread of every output over all records.
     spreads: Vec<f64>,
@@ -175,7 +175,6 @@ impl<'a> Fit<'a> {
                 known: known().collect(),
             });
         }
-        let steep = Steep::all(system, first);
         let (mut keys, mut unknowns, mut names) = (vec![], vec![], vec![]);
         for (p, parameter) in signals.parameters.iter().enumerate() {
             if parameter.fixed || held.contains(&parameter.name) {
@@ -210,6 +209,9 @@ impl<'a> Fit<'a> {
                 }
             }
         }
+        let mut steep = Steep::all(system, first);
+        // a width that is held is the caller's
+        steep.retain(|steep| keys.contains(&Key::EffectParameter(steep.width)));
         let spread = |o: usize| {
             let all: Vec<f64> = runs
                 .iter()

@@ -80,9 +80,9 @@ impl Predictor {
 
     /// A law of a model file as a cause; `None` where it has a memory, or stands nowhere in this model.
     fn given(&self, placed: &Placed) -> Option<Found> {
-        let output = |(name, _): &(String, String)| *name == placed.into;
-        let force = self.forces().iter().position(output).map(Site::Force);
-        let site = self.outputs().iter().position(output).map(Site::Output).or(force)?;
+        let is_there = |(name, _): &(String, String)| *name == placed.into;
+        let force = self.forces().iter().position(is_there).map(Site::Force);
+        let site = self.outputs().iter().position(is_there).map(Site::Output).or(force)?;
         let source = match &placed.of {
             Some(of) => Some(self.model.plan.sources.find(of)?),
             None => None,

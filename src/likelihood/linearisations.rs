@@ -6,7 +6,7 @@
 //! Source: Jazwinski, "Stochastic Processes and Filtering Theory", 1970, section 8.3 (extended Kalman filter).
 
 use super::error::LikelihoodError;
-use super::follow::Wanted;
+use super::follow::{Followed, Wanted};
 use super::noise::Noise;
 use super::parametrised::Model;
 use super::path::Path;
@@ -22,14 +22,14 @@ impl Predictor {
     /// a law the machine is on the first does not know where an output does not tell it, as behind a rectifier;
     /// the second goes astray where the plant does.
     pub(crate) fn choose(&self, model: &Model) -> Result<Chosen, LikelihoodError> {
-        let tracking = self.tracking(model)?;
+        let loose = self.loose(model)?;
+        let tracking = self.tracking_from(model, &loose)?;
         let chosen = self.chosen_on(model, &tracking)?;
         // all linearisations of a linear model are the same
         if (1..tracking.len).all(|k| tracking.is_as_before(k)) {
             return Ok(chosen);
         }
-        let loose = self.run(model, &self.wide_noise(), Wanted::default());
-        let loose = loose.ok().filter(|run| run.diverged_at.is_none());
+        let loose = Some(loose).filter(|run| run.diverged_at.is_none());
         let other = loose.and_then(|run| self.chosen_on(model, &run.path).ok());
         let each = 0.5 * self.observed().ln();
         let worth = |of: &Chosen| of.log_likelihood - each * of.noise.count() as f64;
@@ -50,20 +50,31 @@ impl Predictor {
         self.white(self.spread.iter().map(|s| s * s + NONE).collect())
     }
 
+    /// A filter that hardly follows the data.
+    fn loose(&self, model: &Model) -> Result<Followed, LikelihoodError> {
+        self.run(model, &self.wide_noise(), Wanted::default())
+    }
+
     /// The path of a filter that follows the data closely.
     pub(crate) fn tracking(&self, model: &Model) -> Result<Path, LikelihoodError> {
-        let mut run = self.run(model, &self.wide_noise(), Wanted::default())?;
+        self.tracking_from(model, &self.loose(model)?)
+    }
+
+    /// The same from a run that does not.
+    fn tracking_from(&self, model: &Model, loose: &Followed) -> Result<Path, LikelihoodError> {
+        let mut closer: Option<Followed> = None;
         for _ in 0..2 {
-            let noise = self.tracking_noise(&run.path);
+            let noise = self.tracking_noise(&closer.as_ref().unwrap_or(loose).path);
             let next = self.run(model, &noise, Wanted::default())?;
             if next.diverged_at.is_some() {
                 break;
             }
-            run = next;
+            closer = Some(next);
         }
-        match run.diverged_at {
-            None => Ok(run.path),
-            Some(sample) => {
+        match (closer, loose.diverged_at) {
+            (Some(run), _) => Ok(run.path),
+            (None, None) => Ok(loose.path.clone()),
+            (None, Some(sample)) => {
                 let time = sample as f64 * self.model.plan.sampling_time;
                 Err(LikelihoodError::Diverges { sample, time })
             }

@@ -10,6 +10,7 @@
 
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::fit::problem::{Grain, Model, Problem};
+use crate::statistics::rms;
 
 /// Step of the central difference of a sensor's law, as a share of the root mean square of what it reads.
 const STEP: f64 = 1e-3;
@@ -44,8 +45,7 @@ fn signs(problem: &Problem<'_>, model: &Model, output: usize) -> Option<Vec<f64>
     }
     let y = problem.simulate(&model.without_all(&own), Grain::Coarse)?;
     let z = &y[output];
-    let square = z.iter().map(|z| z * z).sum::<f64>() / z.len().max(1) as f64;
-    let h = STEP * square.sqrt();
+    let h = STEP * rms(z);
     let read = |by: f64| -> Vec<f64> {
         let at: Vec<f64> = z.iter().map(|z| z + by).collect();
         let laws = model.sum(&own, problem.step(Grain::Coarse), &at);

@@ -1,9 +1,9 @@
 //! The system that a model stands for: the baseline with other parameters and more effects.
 
 use crate::error::DiagnoseError;
-use crate::fit::problem::{Grain, Model, Problem};
+use crate::fit::problem::{Added, Grain, Model, Problem};
 use crate::model::with_parameters;
-use crate::system::System;
+use crate::system::{Placed, System};
 
 /// The system with a model's parameters and causes.
 ///
@@ -14,12 +14,7 @@ pub(crate) fn extended(problem: &Problem<'_>, model: &Model) -> Result<System, D
     let signals = &problem.base.signals;
     let theta = model.parameters();
     let mut extended = problem.system.clone();
-    let step = problem.step(Grain::Fine);
-    for added in &model.added {
-        // a parameter is no effect: it has no entry of its own
-        let parameters = added.cause.clipped(&added.parameters, step, &theta);
-        extended.effects.extend(added.cause.placed(&parameters));
-    }
+    extended.effects.extend(placed(problem, &theta, &model.added));
     let changes: Vec<(String, f64)> = signals
         .parameters
         .iter()
@@ -34,4 +29,13 @@ pub(crate) fn extended(problem: &Problem<'_>, model: &Model) -> Result<System, D
     let step = &mut extended.sampling.sampling_time;
     *step = step.or(Some(problem.base.sampling_time));
     Ok(extended)
+}
+
+/// Causes as entries of a model file, at parameter values `theta` of the model.
+pub(crate) fn placed(problem: &Problem<'_>, theta: &[f64], causes: &[Added]) -> Vec<Placed> {
+    let step = problem.step(Grain::Fine);
+    // a parameter is no effect: it has no entry of its own
+    let one =
+        |added: &Added| added.cause.placed(&added.cause.clipped(&added.parameters, step, theta));
+    causes.iter().filter_map(one).collect()
 }

@@ -8,7 +8,8 @@
 //!         causes <- by the innovations; where noise inside the plant is called for beside them: the answer
 //! what it leaves is white                     keep it: all noise sits at the sensors
 //! free run with coloured noise as likely as a predictor with noise inside: keep it
-//! causes <- by the innovations of the predictor (`likelihood::Predictor::explain`)
+//! causes <- by the innovations of the predictor (`likelihood::Predictor::explain`), from nothing on, and where that is
+//!     not more probable than the answer, from the answer's causes on
 //! they are more probable than the answer under either noise: they replace it
 //! ```
 //!

@@ -12,8 +12,9 @@ use crate::candidates::library::{Allowed, library};
 use crate::criteria::LEAVES;
 use crate::error::DiagnoseError;
 use crate::evidence::{Choices, turns_a_sensor};
+use crate::fit::extended::placed;
 use crate::fit::finished::Finished;
-use crate::fit::problem::{Added, Grain, Model, Part, Problem};
+use crate::fit::problem::{Added, Model, Part, Problem};
 use crate::fit::refit::MANY;
 use crate::prepare::input_dependence::DEPENDS;
 use crate::prepare::operating_range::Nominal;
@@ -243,16 +244,11 @@ fn by_innovations(
 fn given(problem: &Problem<'_>, answer: &Finished) -> Option<Given> {
     let model = &answer.fitted.model;
     let theta = model.parameters();
-    let step = problem.step(Grain::Fine);
-    let law = |added: &Added| {
-        let Added { cause, parameters } = added;
-        cause.placed(&cause.clipped(parameters, step, &theta))
-    };
     let nominal = problem.baseline().theta;
     let moved =
         |(p, (value, nominal)): (usize, (&f64, &f64))| (value != nominal).then_some((p, *value));
     let given = Given {
-        laws: model.added[model.known()..].iter().filter_map(law).collect(),
+        laws: placed(problem, &theta, &model.added[model.known()..]),
         parameters: theta.iter().zip(&nominal).enumerate().filter_map(moved).collect(),
     };
     (1..=BEGUN_WITH).contains(&(given.laws.len() + given.parameters.len())).then_some(given)

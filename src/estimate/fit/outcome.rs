@@ -54,11 +54,14 @@ impl Fit<'_> {
             let mut changes = undetermined.iter().flat_map(|combination| &combination.changes);
             changes.any(|(free, _)| free == name)
         };
-        let point = self.followed(&done.point);
+        let effect_values = self.effect_values(&done.point);
         let mut parameters = vec![];
         for (i, (name, unit)) in self.names.iter().enumerate() {
             let u = &self.unknowns[i];
-            let value = point[i];
+            let value = match self.keys[i] {
+                Key::EffectParameter(k) => effect_values[k],
+                Key::Theta(_) | Key::Start(..) => done.point[i],
+            };
             let is_too_steep = done.point[i] < value;
             let at_bound = value <= u.bounds.0 || value >= u.bounds.1 || is_too_steep;
             let error = covariance.as_ref().map(|c| c[(i, i)].sqrt() * u.scale);
@@ -79,7 +82,7 @@ impl Fit<'_> {
             });
         }
         Ok(Estimate {
-            system: self.with_values(&point)?,
+            system: self.with_values(&done.point, &effect_values)?,
             parameters,
             undetermined,
             nrmse: (before.sqrt(), variance.sqrt()),
@@ -90,19 +93,13 @@ impl Fit<'_> {
     }
 
     /// The system with the values at a point.
-    fn with_values(&self, point: &[f64]) -> Result<System, EvaluateError> {
+    fn with_values(&self, point: &[f64], effect_values: &[f64]) -> Result<System, EvaluateError> {
         let first = &self.runs[0];
-        let mut changes = vec![];
-        let mut effect_values = first.plan.effect_values();
-        for (&key, &value) in self.keys.iter().zip(point) {
-            match key {
-                Key::Theta(p) => {
-                    changes.push((first.plan.signals.parameters[p].name.clone(), value));
-                }
-                Key::EffectParameter(k) => effect_values[k] = value,
-                Key::Start(..) => {}
-            }
-        }
+        let change = |(&key, &value): (&Key, &f64)| match key {
+            Key::Theta(p) => Some((first.plan.signals.parameters[p].name.clone(), value)),
+            Key::EffectParameter(_) | Key::Start(..) => None,
+        };
+        let changes: Vec<(String, f64)> = self.keys.iter().zip(point).filter_map(change).collect();
         let written =
             |error: serde_json::Error| EvaluateError::NotWritten { reason: error.to_string() };
         let mut system = self.system.clone();

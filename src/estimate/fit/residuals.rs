@@ -7,43 +7,33 @@ use crate::optimise::{Levenberg, Settings, Unknown};
 use crate::system::Lane;
 
 impl Fit<'_> {
-    /// A point with the widths of friction that the integrator follows.
-    pub(super) fn followed(&self, point: &[f64]) -> Vec<f64> {
+    /// Parameters of effects at a point, friction that is fitted no steeper than the integrator follows.
+    pub(super) fn effect_values(&self, point: &[f64]) -> Vec<f64> {
         let mut values = self.runs[0].plan.effect_values();
-        let own = || {
-            let number = |(at, key): (usize, &Key)| match *key {
-                Key::EffectParameter(k) => Some((at, k)),
-                _ => None,
-            };
-            self.keys.iter().enumerate().filter_map(number)
-        };
-        own().for_each(|(at, k)| values[k] = point[at]);
-        let mut followed = point.to_vec();
-        for steep in &self.steep {
-            let least = steep.least(&values);
-            let width = own().find(|&(_, k)| k == steep.width);
-            if let Some((at, _)) = width {
-                followed[at] = followed[at].max(least);
+        for (&key, &value) in self.keys.iter().zip(point) {
+            if let Key::EffectParameter(k) = key {
+                values[k] = value;
             }
         }
-        followed
+        for steep in &self.steep {
+            values[steep.width] = values[steep.width].max(steep.least(&values));
+        }
+        values
     }
 
     pub(super) fn lane(&self, point: &[f64], r: usize) -> Lane {
-        let point = &self.followed(point);
         let run = &self.runs[r];
         let mut lane = Lane {
             theta: run.plan.signals.theta(),
-            effect_values: run.plan.effect_values(),
+            effect_values: self.effect_values(point),
             starts: vec![run.plan.signals.initial(); run.drive.segments.len()],
             ..Lane::default()
         };
         for (&key, &value) in self.keys.iter().zip(point) {
             match key {
                 Key::Theta(p) => lane.theta[p] = value,
-                Key::EffectParameter(k) => lane.effect_values[k] = value,
                 Key::Start(of, s, i) if of == r => lane.starts[s][i] = value,
-                Key::Start(..) => {}
+                Key::EffectParameter(_) | Key::Start(..) => {}
             }
         }
         lane
