@@ -2,6 +2,9 @@
 
 use lacuna::prelude::*;
 
+/// Periods per turn that are looked for: poles, slots, teeth, balls and their multiples.
+const ORDERS: [u8; 19] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 16, 18, 20, 24, 30, 36, 48];
+
 /// w = a sin(n (z - from)) + b cos(n (z - from)).
 #[derive(Debug, Clone, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -52,7 +55,11 @@ impl Effect for Harmonic {
             let lines = Search::plain(&card).over(&card, "n", &view.lines, (lowest, highest));
             lines.each(&card, "from", &[view.first])
         } else {
-            Search::plain(&card).over(&card, "n", &[1.0, 2.0, 3.0, 4.0, 6.0], (0.5, 100.0))
+            // an order is told from its neighbours within a fraction of a turn in all turns of a record; one that
+            // passes more than half a period from sample to sample is told as a lower one
+            let told = |n: &f64| n * view.rate_rms * view.sampling_time < std::f64::consts::PI;
+            let orders: Vec<f64> = ORDERS.into_iter().map(f64::from).filter(told).collect();
+            Search::plain(&card).over(&card, "n", &orders, (0.5, 100.0))
         }
     }
 }

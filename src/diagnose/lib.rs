@@ -18,6 +18,7 @@ mod error;
 mod evidence;
 mod final_fit;
 mod findings;
+mod finer_steps;
 mod fit;
 mod guard;
 mod innovations;

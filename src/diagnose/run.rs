@@ -119,8 +119,17 @@ impl Diagnosis<'_> {
             interrupted: watch.stopped(),
             seconds: started.elapsed().as_secs_f64(),
         };
+        let finding = searched.finding(around);
+        let finding = match self.in_finer_steps(&finding, (records, test), watch) {
+            None => finding,
+            Some(finer) => {
+                let again = Diagnosis { system: &finer, ..self.clone() };
+                let found = again.run_on(records, test, watch)?;
+                Finding { seconds: started.elapsed().as_secs_f64(), ..found }
+            }
+        };
         watch.report(1.0, "done");
-        Ok(searched.finding(around))
+        Ok(finding)
     }
 
     /// The baseline's figures, where there is nothing to search in.

@@ -98,6 +98,7 @@ impl Predictor {
             law: 1.0,
             at_place: 1.0,
             others: vec![],
+            rivals: vec![],
             chosen_again: true,
             disguised: vec![],
         }

@@ -4,15 +4,17 @@
 //! causes that are given (`given.rs`), none as a rule
 //! repeat  the most probable place and its laws, given the causes before (`places.rs`)
 //!         all causes fitted together, the noise anew
-//! until nothing more is probable
+//! until nothing more is probable, fitted together with the others (`beside.rs`)
 //! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), the pole of a slow force is
-//! chosen anew, with a constant or without (`steady.rs`); then more causes
+//! chosen anew, with a constant or without (`steady.rs`), the law of a place is, beside the others
+//! (`beside.rs`); then more causes
 //! causes that are not needed beside the others are left out
 //! causes that held samples speak against are withdrawn; the rest fitted to all samples
 //! ```
 //!
 //! Sources: Miller, "Subset Selection in Regression", 2nd ed., 2002; Dawid, JRSS A 147, 1984.
 
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use nalgebra::DMatrix;
@@ -22,9 +24,8 @@ use super::explanation::{Explanation, NamedCause};
 use super::found::{Found, dealt, joined};
 use super::given::{Begun, Given};
 use super::held_out::refutes;
-use super::hypothesis::{Hypothesis, names};
+use super::hypothesis::Hypothesis;
 use super::noise::{Layout, Noise};
-use super::places::Survey;
 use super::predictor::{Predictor, starts};
 use super::ranked::MISSING;
 use super::replay::Pass;
@@ -50,10 +51,15 @@ impl Predictor {
         let Begun { null, mut found, mut now } = fit.first_hypothesis(given, noise)?;
         let gain = fit.merit(&now, &found) - fit.merit(&null, &[]);
         let mut nothing = if found.is_empty() { 1.0 } else { 1.0 / (1.0 + gain.exp()) };
+        let mut seen = BTreeSet::new();
         loop {
             (found, now) = fit.one_by_one((found, now), most, stop, &mut nothing)?;
-            let mut exchanged =
-                || fit.exchanged(&mut found, &mut now) || fit.steadied(&mut found, &mut now, most);
+            // laws that give way to each other in turn end where they were before
+            let mut exchanged = || {
+                fit.exchanged(&mut found, &mut now)
+                    || fit.steadied(&mut found, &mut now, most)
+                    || fit.laws_anew(&mut found, &mut now) && seen.insert(now.names())
+            };
             if stop() || !exchanged() {
                 break;
             }
@@ -91,7 +97,11 @@ impl Predictor {
             };
             let open: Vec<Weighed> = survey.sets.iter().filter(|s| !settled(s)).cloned().collect();
             let Some(best) = plainest(&open).filter(|set| set.log_odds > MISSING) else {
-                break;
+                match self.together(&survey, &open, (&found, &now)) {
+                    Some(more) => (found, now) = more,
+                    None => break,
+                }
+                continue;
             };
             let known = found.iter().position(|cause| cause.place == best.place);
             let (mut kept, cause) = match known {
@@ -124,26 +134,6 @@ impl Predictor {
             }
         }
         Ok((found, now))
-    }
-
-    /// A set of a survey as a cause.
-    fn of(&self, survey: &Survey, set: &Weighed) -> Found {
-        let at = |other: &&Weighed| other.place == set.place;
-        let named = |other: &&Weighed| other.hypothesis.names() == names(&set.hypothesis.parts);
-        let sum = |sets: Vec<&Weighed>| sets.iter().map(|set| set.probability).sum::<f64>();
-        let same: Vec<&Weighed> = survey.sets.iter().filter(at).filter(named).collect();
-        let others = survey.sets.iter().filter(|other| !(at(other) && named(other)));
-        Found {
-            place: set.place,
-            parts: set.hypothesis.parts.clone(),
-            choice: set.choice,
-            log_odds: set.log_odds,
-            law: sum(same).min(1.0),
-            at_place: sum(survey.sets.iter().filter(at).collect()).min(1.0),
-            others: others.map(|other| self.fitted_laws(other.clone())).collect(),
-            chosen_again: false,
-            disguised: vec![],
-        }
     }
 
     /// The predictor of a model that has a hypothesis in it.

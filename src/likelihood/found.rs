@@ -1,8 +1,14 @@
 //! Causes under way: what a search for all causes goes on with.
 
-use super::hypothesis::{Hypothesis, Part};
+use super::hypothesis::{Hypothesis, Part, names};
+use super::places::Survey;
+use super::predictor::Predictor;
 use super::ranked::FittedLaws;
 use super::tangent::Site;
+use super::weigh::Weighed;
+
+/// Laws of a place that may be chosen in the place of others, at most.
+const LAWS: usize = 8;
 
 /// A cause under way; its parts stand in the hypothesis in the order of causes.
 #[derive(Debug, Clone)]
@@ -14,6 +20,8 @@ pub(crate) struct Found {
     pub law: f64,
     pub at_place: f64,
     pub others: Vec<FittedLaws>,
+    /// Other sets of laws of its place.
+    pub rivals: Vec<Weighed>,
     pub chosen_again: bool,
     /// Laws that may be a parameter in disguise: number of the part, parameter, probability.
     pub disguised: Vec<(usize, usize, f64)>,
@@ -31,4 +39,40 @@ pub(crate) fn dealt(found: &mut [Found], of: &Hypothesis) {
         let count = cause.parts.len();
         cause.parts = parts.by_ref().take(count).collect();
     }
+}
+
+impl Predictor {
+    /// A set of a survey as a cause.
+    pub(super) fn of(&self, survey: &Survey, set: &Weighed) -> Found {
+        let at = |other: &&Weighed| other.place == set.place;
+        let named = |other: &&Weighed| other.hypothesis.names() == names(&set.hypothesis.parts);
+        let sum = |sets: Vec<&Weighed>| sets.iter().map(|set| set.probability).sum::<f64>();
+        let same: Vec<&Weighed> = survey.sets.iter().filter(at).filter(named).collect();
+        let others = survey.sets.iter().filter(|other| !(at(other) && named(other)));
+        Found {
+            place: set.place,
+            parts: set.hypothesis.parts.clone(),
+            choice: set.choice,
+            log_odds: set.log_odds,
+            law: sum(same).min(1.0),
+            at_place: sum(survey.sets.iter().filter(at).collect()).min(1.0),
+            others: others.map(|other| self.fitted_laws(other.clone())).collect(),
+            rivals: rivals(survey, set),
+            chosen_again: false,
+            disguised: vec![],
+        }
+    }
+}
+
+/// The best set of each name at the place of a set, the set itself not among them.
+fn rivals(survey: &Survey, of: &Weighed) -> Vec<Weighed> {
+    let mut rivals: Vec<Weighed> = vec![];
+    for set in survey.sets.iter().filter(|set| set.place == of.place) {
+        let name = set.hypothesis.names();
+        let is_new = !rivals.iter().any(|rival| rival.hypothesis.names() == name);
+        if is_new && name != of.hypothesis.names() && rivals.len() < LAWS {
+            rivals.push(set.clone());
+        }
+    }
+    rivals
 }

@@ -28,8 +28,8 @@ pub(crate) struct Law {
 /// Where a law would be put.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Spot {
-    /// A channel of the model, of a coordinate; whether that is a velocity.
-    Channel { velocity: bool },
+    /// A channel of the model, of a coordinate; whether that is a velocity, or an angle.
+    Channel { velocity: bool, angle: bool },
     /// An input or output, of itself.
     OwnPath { input: bool },
 }
@@ -42,14 +42,15 @@ pub(crate) fn laws(spot: Spot, view: &View, loads: &[usize]) -> Vec<Law> {
         let card = effect.card();
         let fits = match (spot, card.needs) {
             (_, Needs::Coordinate) => true,
-            (Spot::Channel { velocity }, Needs::NoVelocity) => !velocity,
+            (Spot::Channel { velocity, .. }, Needs::NoVelocity) => !velocity,
             (Spot::OwnPath { .. }, Needs::NoVelocity) => true,
-            (Spot::Channel { velocity }, Needs::Velocity) => velocity && view.changes_sign(),
+            (Spot::Channel { velocity, .. }, Needs::Velocity) => velocity && view.changes_sign(),
+            (Spot::Channel { angle, .. }, Needs::AngleOrTime) => angle,
             (Spot::OwnPath { .. }, Needs::Velocity) => false,
             _ => false,
         };
         let under_load = card.needs == Needs::VelocityUnderLoad
-            && matches!(spot, Spot::Channel { velocity: true })
+            && matches!(spot, Spot::Channel { velocity: true, .. })
             && view.changes_sign();
         if under_load {
             for &load in loads {
@@ -243,7 +244,7 @@ mod tests {
     #[test]
     fn thresholds_and_widths_stay_in_the_range_of_their_coordinate() {
         let z: Vec<f64> = (0..2000).map(|k| 3.0 * (0.01 * f64::from(k)).sin()).collect();
-        let all = laws(Spot::Channel { velocity: true }, &View::new(&z, 0.01), &[3]);
+        let all = laws(Spot::Channel { velocity: true, angle: false }, &View::new(&z, 0.01), &[3]);
         assert!(all.iter().any(|law| law.name == "stribeck_friction"));
         let loaded = all.iter().find(|law| law.load == Some(3)).unwrap();
         let columns = loaded.columns(&[-9.0, 9.0], &[2.0, -4.0]);

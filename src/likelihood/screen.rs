@@ -76,7 +76,7 @@ impl Predictor {
         let push = |site, source: Option<usize>, z: Vec<f64>, spot, scale, direction| {
             let own_path = matches!(spot, Spot::OwnPath { .. });
             let loads = match spot {
-                Spot::Channel { velocity: true } => self.loads(path, site, &distinct),
+                Spot::Channel { velocity: true, .. } => self.loads(path, site, &distinct),
                 _ => vec![],
             };
             let offered: Vec<usize> = loads.iter().map(|load| load.0).collect();
@@ -86,6 +86,7 @@ impl Predictor {
             let knots = knots(&z).unwrap_or_default();
             Spotted { site, source, z, knots, laws, loads, scale }
         };
+        let channel = |e| Spot::Channel { velocity: plan.is_velocity(e), angle: plan.is_angle(e) };
         let forces = self.distinct(path);
         let moved = forces.iter().map(|&c| self.moved_by(path, c, scales[c]));
         let moved = moved.collect::<Result<Vec<_>, _>>()?;
@@ -94,7 +95,7 @@ impl Predictor {
                 let z = column(&path.seen, entries, e);
                 let own = plan.sources.entries[e].1;
                 let spot = match c < nw {
-                    true => Spot::Channel { velocity: plan.is_velocity(e) },
+                    true => channel(e),
                     false if own == Origin::Input(c - nw) => Spot::OwnPath { input: true },
                     false => continue,
                 };
@@ -112,7 +113,7 @@ impl Predictor {
             let balance = plan.output_equations.balances[o];
             for &e in distinct.iter().filter(|&&e| balance && !plan.sources.is_output(e)) {
                 let z = column(&path.seen, entries, e);
-                let spot = Spot::Channel { velocity: plan.is_velocity(e) };
+                let spot = channel(e);
                 found.push(push(Site::Output(o), Some(e), z, spot, self.spread[o], None));
             }
         }

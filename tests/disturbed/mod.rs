@@ -9,6 +9,7 @@
 pub mod plants;
 
 mod bare;
+mod beside;
 mod more;
 mod rectified;
 mod revolving;

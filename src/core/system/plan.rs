@@ -136,6 +136,13 @@ impl Base {
         }
     }
 
+    /// Whether an entry of the source table is an angle, of which a law may be periodic.
+    pub fn is_angle(&self, entry: usize) -> bool {
+        let signal = &self.sources.entries[entry].0;
+        let kind = signal.quantity.as_ref().map(|quantity| quantity.0.as_str());
+        signal.unit == "rad" && matches!(kind, None | Some("angle" | "position"))
+    }
+
     /// Whether an entry of the source table may be the load of a friction in a channel of this unit: a
     /// force, which has that unit and is no velocity.
     pub fn may_load(&self, entry: usize, unit: &str) -> bool {

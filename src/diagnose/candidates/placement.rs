@@ -204,17 +204,7 @@ impl Builder<'_, '_> {
                     };
                     (d * rate.1, Some(rate))
                 }
-                Needs::AngleOrTime => {
-                    let angle = signal.unit == "rad"
-                        && signal
-                            .quantity
-                            .as_ref()
-                            .is_none_or(|q| matches!(q.0.as_str(), "angle" | "position"));
-                    if !angle {
-                        continue;
-                    }
-                    (0.0, None)
-                }
+                Needs::AngleOrTime if !base.is_angle(source) => continue,
                 _ => (0.0, None),
             };
             let first = self.found.len();

@@ -9,6 +9,10 @@
 //!
 //! tells which, and the plain fit stays, which simulates best whatever the disturbance. V in the place of
 //! V - V_G, which need not be a covariance in a record, makes m smaller by a share of V_G / V.
+//!
+//! White noise whose variances differ from output to output is such a disturbance too: where the largest is r
+//! times the least, plain least squares may need (1 + r)^2 / (4 r) times the data (Watson, Biometrika 42, 1955).
+//! Outputs are scaled by what the baseline leaves of them, and one that diverges would count for nothing.
 
 use std::sync::Arc;
 
@@ -23,6 +27,8 @@ use crate::fit::refit::{Fitted, MANY, Refit, Stop, refit_until, refit_whitened};
 
 /// Normal score beyond which the two fits differ: a test of size 1 %.
 const DIFFERENT: f64 = 2.326;
+/// Efficiency of plain least squares, at worst, that is as good as all.
+const EFFICIENT: f64 = 0.95;
 
 /// A fit in a disturbance that is not white.
 pub(crate) struct Efficient {
@@ -48,7 +54,7 @@ pub(crate) fn efficient(
     let by = Stretches::through_sensors_of(problem, &plain.model, Part::All)
         .estimate(&plain.residuals)
         .whitener;
-    if !by.is_coloured() {
+    if !by.is_coloured() && least_efficiency(problem, &plain.residuals) > EFFICIENT {
         return None;
     }
     let (models, filters) = (std::slice::from_ref(&plain.model), std::slice::from_ref(&by));
@@ -61,6 +67,24 @@ pub(crate) fn efficient(
     let precision = Precision::new(problem, nuisance, &fitted)?;
     let y = problem.simulate(&fitted.model, Grain::Fine)?;
     Some(Efficient { fitted, precision, y, by })
+}
+
+/// Efficiency of plain least squares at worst, by the variances of the outputs' white residuals.
+fn least_efficiency(problem: &Problem<'_>, residuals: &[f64]) -> f64 {
+    let n = problem.samples(Part::All).count().max(1);
+    let variance = |(o, r): (usize, &[f64])| {
+        let known = problem.samples(Part::All).map(|k| problem.weight[o][k]).sum::<f64>();
+        r.iter().map(|r| r * r).sum::<f64>() / known.max(1.0)
+    };
+    efficiency(residuals.chunks(n).enumerate().map(variance))
+}
+
+/// The same of these variances; what has none says nothing of it.
+fn efficiency(variances: impl Iterator<Item = f64>) -> f64 {
+    let all = variances.filter(|v| *v > 0.0);
+    let (least, most) = all.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
+    let ratio = most / least;
+    if ratio.is_finite() && ratio > 1.0 { 4.0 * ratio / (1.0 + ratio).powi(2) } else { 1.0 }
 }
 
 /// Score of Hausman's test between two fits of the same numbers; initial states, which the plain one
@@ -113,7 +137,14 @@ impl Finished {
 
 #[cfg(test)]
 mod tests {
-    use super::score;
+    use super::{efficiency, score};
+
+    #[test]
+    fn outputs_of_the_same_noise_need_no_weights() {
+        let of = |variances: &[f64]| efficiency(variances.iter().copied());
+        assert_eq!((of(&[]), of(&[3.0]), of(&[3.0, 0.0, 3.0])), (1.0, 1.0, 1.0));
+        assert!((of(&[2.0, 8.0, 4.0]) - 0.64).abs() < 1e-12);
+    }
 
     #[test]
     fn the_score_of_a_chi_square_is_that_of_its_tables() {

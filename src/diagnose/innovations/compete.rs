@@ -10,7 +10,7 @@ use crate::system::System;
 
 /// By how much noise inside the plant must be more probable for a search of its own: odds of 150 to
 /// 1 (Kass and Raftery, JASA 90, 1995: very strong).
-pub(super) const CLEARLY: f64 = 5.0;
+pub(crate) const CLEARLY: f64 = 5.0;
 /// Log likelihood of a system on a record less the price of the noise's numbers, under the noise that the
 /// record calls for; `None` where it cannot be run.
 pub(crate) fn criterion(system: &System, record: &Record) -> Option<f64> {
