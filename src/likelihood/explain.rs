@@ -4,10 +4,10 @@
 //! causes that are given (`given.rs`), none as a rule
 //! repeat  the most probable place and its laws, given the causes before (`places.rs`)
 //!         all causes fitted together, the noise anew
-//! until nothing more is probable, fitted together with the others (`beside.rs`)
+//! until nothing more is probable, fitted together with the others (`joint.rs`)
 //! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), the pole of a slow force is
 //! chosen anew, with a constant or without (`steady.rs`), the law of a place is, beside the others
-//! (`beside.rs`); then more causes
+//! (`joint.rs`); then more causes
 //! causes that are not needed beside the others are left out
 //! causes that held samples speak against are withdrawn; the rest fitted to all samples
 //! ```
@@ -97,7 +97,7 @@ impl Predictor {
             };
             let open: Vec<Weighed> = survey.sets.iter().filter(|s| !settled(s)).cloned().collect();
             let Some(best) = plainest(&open).filter(|set| set.log_odds > MISSING) else {
-                match self.together(&survey, &open, (&found, &now)) {
+                match self.joint_fit(&survey, &open, (&found, &now)) {
                     Some(more) => (found, now) = more,
                     None => break,
                 }

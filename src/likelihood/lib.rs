@@ -20,7 +20,6 @@ use lacuna_core::{data, effect, evaluate, fault, optimise, real, register, stati
 mod ahead;
 mod autoregressive;
 mod backward;
-mod beside;
 mod error;
 mod evidence;
 mod exchange;
@@ -33,6 +32,7 @@ mod given;
 mod held_out;
 mod hypothesis;
 mod intensities;
+mod joint;
 mod kalman;
 mod lacking;
 mod laws;

@@ -1,6 +1,5 @@
 //! Plants that are disturbed themselves: process noise, noisy inputs, wandering sensors, an integrator
 //! in a closed loop. Nothing hidden: nothing named; one effect of some size: named, place and law.
-//!
 //! g = 1: what the effect adds to the outputs is as large (RMS) as what all noise adds.
 
 // one segment is a list of one range
@@ -9,7 +8,7 @@
 pub mod plants;
 
 mod bare;
-mod beside;
+mod joint;
 mod more;
 mod rectified;
 mod revolving;

@@ -28,7 +28,7 @@ const PLACES: usize = 4;
 impl Predictor {
     /// The causes with one more, of those of a survey that are improbable while the others stay as they are,
     /// where all fitted together are far more probable.
-    pub(crate) fn together(
+    pub(crate) fn joint_fit(
         &self,
         survey: &Survey,
         open: &[Weighed],
@@ -76,7 +76,7 @@ impl Predictor {
     fn law_anew(&self, found: &mut Vec<Found>, now: &mut Hypothesis, at: usize) -> bool {
         let own = found[at].clone();
         let present = self.merit(now, found);
-        let beside = |set: &Weighed| {
+        let replaced = |set: &Weighed| {
             let mut all = found.clone();
             let parts = set.hypothesis.parts.clone();
             all[at] = Found { parts, choice: set.choice, ..own.clone() };
@@ -85,7 +85,7 @@ impl Predictor {
             dealt(&mut all, &fitted);
             Some((own.as_set(&all[at], &fitted, gain), all, fitted))
         };
-        let mut all: Vec<_> = own.rivals.par_iter().filter_map(beside).collect();
+        let mut all: Vec<_> = own.rivals.par_iter().filter_map(replaced).collect();
         if all.is_empty() {
             return false;
         }
