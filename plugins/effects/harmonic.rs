@@ -55,10 +55,9 @@ impl Effect for Harmonic {
             let lines = Search::plain(&card).over(&card, "n", &view.lines, (lowest, highest));
             lines.each(&card, "from", &[view.first])
         } else {
-            // an order is told from its neighbours within a fraction of a turn in all turns of a record; one that
-            // passes more than half a period from sample to sample is told as a lower one
-            let told = |n: &f64| n * view.rate_rms * view.sampling_time < std::f64::consts::PI;
-            let orders: Vec<f64> = ORDERS.into_iter().map(f64::from).filter(told).collect();
+            // sampling distinguishes orders below n |dz/dt| T = pi (Nyquist); a higher one passes for a lower
+            let resolved = |n: &f64| n * view.rate_rms * view.sampling_time < std::f64::consts::PI;
+            let orders: Vec<f64> = ORDERS.into_iter().map(f64::from).filter(resolved).collect();
             Search::plain(&card).over(&card, "n", &orders, (0.5, 100.0))
         }
     }

@@ -7,8 +7,6 @@
 //! is (Ljung, "System Identification", 2nd ed., section 16.4): by the likelihood of the innovations of what was
 //! named with one step a sample, and of what is found in the place of the jump with more.
 
-use std::borrow::Cow;
-
 use super::diagnosis::{Diagnosis, searchable};
 use super::findings::finding::Finding;
 use super::innovations::CLEARLY;
@@ -37,8 +35,8 @@ impl Diagnosis<'_> {
             return None;
         }
         watch.report(0.99, "asking for finer steps");
-        let used: Cow<'_, [Record]> = searchable(records, test);
-        let count = given.laws.len() + given.parameters.len();
+        let used = searchable(records, test);
+        let count = given.count();
         let value = |system: &System, given: &Given| {
             let predictor = Predictor::new(system, &used).ok()?;
             let found = predictor.explain((given, count), &[], None, &|| watch.stopped()).ok()?;
@@ -58,9 +56,7 @@ impl Diagnosis<'_> {
 fn given(system: &System, finding: &Finding) -> Option<Given> {
     let laws = finding.extended.effects.get(system.effects.len()..)?.to_vec();
     let (before, after) = (system.signals().theta(), finding.extended.signals().theta());
-    let moved = before.iter().zip(&after).enumerate().filter(|(_, (a, b))| a != b);
-    let parameters = moved.map(|(p, (_, value))| (p, *value)).collect();
-    laws.iter().any(is_steep).then_some(Given { laws, parameters })
+    laws.iter().any(is_steep).then(|| Given::new(laws, &before, &after))
 }
 
 /// Whether a law jumps at zero, over a width of its own.

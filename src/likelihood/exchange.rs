@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use super::found::{Found, dealt, joined};
+use super::found::Found;
 use super::hypothesis::{Hypothesis, Part};
 use super::predictor::Predictor;
 use super::tangent::Site;
@@ -74,14 +74,11 @@ impl Predictor {
             }
             let place = (Site::Parameter(parameter), None);
             causes.push(Found { parts: vec![Part::Parameter(parameter)], ..self.as_cause(place) });
-            let fitted = self.fit(joined(&causes), &now.theta, &now.noise)?;
-            let fitted = self.refit(fitted)?;
+            let fitted = self.fit_all(&mut causes, &now.theta, &now.noise)?;
             let gain = self.merit(&fitted, &causes) - value;
-            dealt(&mut causes, &fitted);
             // against the law that it was exchanged for
             if let Some(last) = causes.last_mut() {
-                last.law = 1.0 / (1.0 + (-gain).exp());
-                last.at_place = last.law;
+                last.weighed_against_one(gain);
             }
             Some(Exchange { cause, part, parameter, gain, causes, fitted })
         };

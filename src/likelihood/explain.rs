@@ -4,10 +4,10 @@
 //! causes that are given (`given.rs`), none as a rule
 //! repeat  the most probable place and its laws, given the causes before (`places.rs`)
 //!         all causes fitted together, the noise anew
-//! until nothing more is probable, fitted together with the others (`joint.rs`)
+//! until nothing more is probable, fitted together with the others too (`joint.rs`)
 //! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), the pole of a slow force is
-//! chosen anew, with a constant or without (`steady.rs`), the law of a place is, beside the others
-//! (`joint.rs`); then more causes
+//! chosen anew, with a constant or without (`steady.rs`), and so is the law of a place, the other causes being
+//! there (`joint.rs`); then more causes
 //! causes that are not needed beside the others are left out
 //! causes that held samples speak against are withdrawn; the rest fitted to all samples
 //! ```
@@ -97,10 +97,8 @@ impl Predictor {
             };
             let open: Vec<Weighed> = survey.sets.iter().filter(|s| !settled(s)).cloned().collect();
             let Some(best) = plainest(&open).filter(|set| set.log_odds > MISSING) else {
-                match self.joint_fit(&survey, &open, (&found, &now)) {
-                    Some(more) => (found, now) = more,
-                    None => break,
-                }
+                let Some(more) = self.joint_fit(&survey, &open, (&found, &now)) else { break };
+                (found, now) = more;
                 continue;
             };
             let known = found.iter().position(|cause| cause.place == best.place);
@@ -120,14 +118,10 @@ impl Predictor {
             };
             let start = best.hypothesis.clone();
             kept.push(cause);
-            let fitted = self.fit(joined(&kept), &start.theta, &start.noise);
-            let joint = fitted.and_then(|h| self.refit(h));
+            let joint = self.fit_all(&mut kept, &start.theta, &start.noise);
             let better = |h: &Hypothesis| self.merit(h, &kept) > self.merit(&now, &found);
             match (joint.filter(better), known) {
-                (Some(joint), _) => {
-                    dealt(&mut kept, &joint);
-                    (found, now) = (kept, joint);
-                }
+                (Some(joint), _) => (found, now) = (kept, joint),
                 // it stays as it was; another place may still lack something
                 (None, Some(at)) => found[at].chosen_again = true,
                 (None, None) => break,
@@ -167,7 +161,7 @@ impl Predictor {
         if let Site::Parameter(p) = gone.place.0 {
             theta[p] = null.theta[p];
         }
-        self.refit(self.fit(joined(&rest), &theta, &now.noise)?)
+        self.fit_all(&mut rest, &theta, &now.noise)
     }
 
     /// Leaves out causes that are not needed beside the others, the least needed first.
@@ -223,8 +217,7 @@ impl Predictor {
         now: Hypothesis,
         nothing: f64,
     ) -> Result<Explanation, LikelihoodError> {
-        let fitted = self.fit(joined(&found), &now.theta, &now.noise);
-        let now = fitted.and_then(|h| self.refit(h)).unwrap_or(now);
+        let now = self.fit_all(&mut found, &now.theta, &now.noise).unwrap_or(now);
         dealt(&mut found, &now);
         let (now, run) = self.evaluated(now)?;
         let covariances = self.covariances(&now, &run);

@@ -1,6 +1,7 @@
 //! Causes under way: what a search for all causes goes on with.
 
 use super::hypothesis::{Hypothesis, Part, names};
+use super::noise::Noise;
 use super::places::Survey;
 use super::predictor::Predictor;
 use super::ranked::FittedLaws;
@@ -41,7 +42,27 @@ pub(crate) fn dealt(found: &mut [Found], of: &Hypothesis) {
     }
 }
 
+impl Found {
+    /// Takes the probability that `gain`, a logarithm of odds, leaves it against what it was weighed against alone.
+    pub(super) fn weighed_against_one(&mut self, gain: f64) {
+        self.law = 1.0 / (1.0 + (-gain).exp());
+        self.at_place = self.law;
+    }
+}
+
 impl Predictor {
+    /// All causes fitted together, the noise anew; they have the fitted parts then.
+    pub(super) fn fit_all(
+        &self,
+        found: &mut [Found],
+        theta: &[f64],
+        noise: &Noise,
+    ) -> Option<Hypothesis> {
+        let fitted = self.refit(self.fit(joined(found), theta, noise)?)?;
+        dealt(found, &fitted);
+        Some(fitted)
+    }
+
     /// A set of a survey as a cause.
     pub(super) fn of(&self, survey: &Survey, set: &Weighed) -> Found {
         let at = |other: &&Weighed| other.place == set.place;

@@ -25,6 +25,20 @@ pub struct Given {
     pub parameters: Vec<(usize, f64)>,
 }
 
+impl Given {
+    /// These laws, and the parameters whose values `after` are not those `before`.
+    pub fn new(laws: Vec<Placed>, before: &[f64], after: &[f64]) -> Self {
+        let both = before.iter().zip(after).enumerate();
+        let parameters = both.filter(|(_, (a, b))| a != b).map(|(p, (_, b))| (p, *b)).collect();
+        Self { laws, parameters }
+    }
+
+    /// How many causes it has.
+    pub fn count(&self) -> usize {
+        self.laws.len() + self.parameters.len()
+    }
+}
+
 /// Where a search begins.
 pub(crate) struct Begun {
     /// Nothing missing, its noise its own where it can be run.

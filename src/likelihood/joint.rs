@@ -15,7 +15,7 @@
 use rayon::prelude::*;
 
 use super::evidence::log_sum;
-use super::found::{Found, dealt, joined};
+use super::found::Found;
 use super::hypothesis::{Hypothesis, names};
 use super::places::Survey;
 use super::predictor::Predictor;
@@ -50,13 +50,11 @@ impl Predictor {
             let mut all = found.to_vec();
             all.push(self.of(survey, set));
             let start = &set.hypothesis;
-            let fitted = self.refit(self.fit(joined(&all), &start.theta, &start.noise)?)?;
+            let fitted = self.fit_all(&mut all, &start.theta, &start.noise)?;
             let gain = self.merit(&fitted, &all) - before;
-            dealt(&mut all, &fitted);
             let last = all.last_mut()?;
             last.log_odds = gain;
-            last.law = 1.0 / (1.0 + (-gain).exp());
-            last.at_place = last.law;
+            last.weighed_against_one(gain);
             (gain > MISSING).then_some((gain, all, fitted))
         };
         let better: Vec<_> = best.par_iter().filter_map(one).collect();
@@ -80,9 +78,8 @@ impl Predictor {
             let mut all = found.clone();
             let parts = set.hypothesis.parts.clone();
             all[at] = Found { parts, choice: set.choice, ..own.clone() };
-            let fitted = self.refit(self.fit(joined(&all), &now.theta, &now.noise)?)?;
+            let fitted = self.fit_all(&mut all, &now.theta, &now.noise)?;
             let gain = self.merit(&fitted, &all) - present;
-            dealt(&mut all, &fitted);
             Some((own.as_set(&all[at], &fitted, gain), all, fitted))
         };
         let mut all: Vec<_> = own.rivals.par_iter().filter_map(replaced).collect();

@@ -13,7 +13,7 @@
 
 use rayon::prelude::*;
 
-use super::found::{Found, dealt, joined};
+use super::found::Found;
 use super::hypothesis::{Hypothesis, Part};
 use super::laws::offsets;
 use super::noise::Noise;
@@ -46,9 +46,8 @@ impl Predictor {
             .collect();
         let before = self.merit(now, found);
         let fitted = |(mut causes, noise): (Vec<Found>, Noise)| {
-            let fit = self.refit(self.fit(joined(&causes), &now.theta, &noise)?)?;
+            let fit = self.fit_all(&mut causes, &now.theta, &noise)?;
             let gain = self.merit(&fit, &causes) - before;
-            dealt(&mut causes, &fit);
             Some((gain, causes, fit))
         };
         let all: Vec<_> = tried.into_par_iter().filter_map(fitted).collect();
@@ -60,8 +59,8 @@ impl Predictor {
             && let Some(last) = causes.last_mut()
         {
             // against the force that stood for it
-            (last.log_odds, last.law) = (gain, 1.0 / (1.0 + (-gain).exp()));
-            last.at_place = last.law;
+            last.log_odds = gain;
+            last.weighed_against_one(gain);
         }
         (*found, *now) = (causes, fit);
         true

@@ -59,7 +59,8 @@ impl Stretches {
         Self { signs, ..Self::new(problem, part) }
     }
 
-    pub(super) fn per_output<'r>(&self, r: &'r [f64]) -> impl Iterator<Item = (&'r [f64], f64)> {
+    /// The parts of a series that are of one output each, and how many of its samples are known.
+    pub fn per_output<'r>(&self, r: &'r [f64]) -> impl Iterator<Item = (&'r [f64], f64)> {
         r.chunks(self.per_output.max(1)).zip(self.counts.clone())
     }
 }

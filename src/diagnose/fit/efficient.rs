@@ -24,6 +24,7 @@ use crate::fit::finished::Finished;
 use crate::fit::nuisance::{Key, Nuisance, get};
 use crate::fit::problem::{Grain, Model, Part, Problem};
 use crate::fit::refit::{Fitted, MANY, Refit, Stop, refit_until, refit_whitened};
+use crate::statistics::dot;
 
 /// Normal score beyond which the two fits differ: a test of size 1 %.
 const DIFFERENT: f64 = 2.326;
@@ -51,10 +52,11 @@ pub(crate) fn efficient(
     if nuisance.segments >= MANY {
         return None;
     }
-    let by = Stretches::through_sensors_of(problem, &plain.model, Part::All)
-        .estimate(&plain.residuals)
-        .whitener;
-    if !by.is_coloured() && least_efficiency(problem, &plain.residuals) > EFFICIENT {
+    let stretches = Stretches::through_sensors_of(problem, &plain.model, Part::All);
+    let by = stretches.estimate(&plain.residuals).whitener;
+    let per_output = stretches.per_output(&plain.residuals);
+    let variances = per_output.map(|(r, count)| dot(r, r) / count.max(1.0));
+    if !by.is_coloured() && least_efficiency(variances) > EFFICIENT {
         return None;
     }
     let (models, filters) = (std::slice::from_ref(&plain.model), std::slice::from_ref(&by));
@@ -69,18 +71,9 @@ pub(crate) fn efficient(
     Some(Efficient { fitted, precision, y, by })
 }
 
-/// Efficiency of plain least squares at worst, by the variances of the outputs' white residuals.
-fn least_efficiency(problem: &Problem<'_>, residuals: &[f64]) -> f64 {
-    let n = problem.samples(Part::All).count().max(1);
-    let variance = |(o, r): (usize, &[f64])| {
-        let known = problem.samples(Part::All).map(|k| problem.weight[o][k]).sum::<f64>();
-        r.iter().map(|r| r * r).sum::<f64>() / known.max(1.0)
-    };
-    efficiency(residuals.chunks(n).enumerate().map(variance))
-}
-
-/// The same of these variances; what has none says nothing of it.
-fn efficiency(variances: impl Iterator<Item = f64>) -> f64 {
+/// Efficiency of plain least squares at worst, by the outputs' variances of white residuals; what has none says
+/// nothing of it.
+fn least_efficiency(variances: impl Iterator<Item = f64>) -> f64 {
     let all = variances.filter(|v| *v > 0.0);
     let (least, most) = all.fold((f64::INFINITY, 0.0_f64), |(a, b), v| (a.min(v), b.max(v)));
     let ratio = most / least;
@@ -137,11 +130,11 @@ impl Finished {
 
 #[cfg(test)]
 mod tests {
-    use super::{efficiency, score};
+    use super::{least_efficiency, score};
 
     #[test]
     fn outputs_of_the_same_noise_need_no_weights() {
-        let of = |variances: &[f64]| efficiency(variances.iter().copied());
+        let of = |variances: &[f64]| least_efficiency(variances.iter().copied());
         assert_eq!((of(&[]), of(&[3.0]), of(&[3.0, 0.0, 3.0])), (1.0, 1.0, 1.0));
         assert!((of(&[2.0, 8.0, 4.0]) - 0.64).abs() < 1e-12);
     }

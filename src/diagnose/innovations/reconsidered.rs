@@ -244,14 +244,9 @@ fn by_innovations(
 fn given(problem: &Problem<'_>, answer: &Finished) -> Option<Given> {
     let model = &answer.fitted.model;
     let theta = model.parameters();
-    let nominal = problem.baseline().theta;
-    let moved =
-        |(p, (value, nominal)): (usize, (&f64, &f64))| (value != nominal).then_some((p, *value));
-    let given = Given {
-        laws: placed(problem, &theta, &model.added[model.known()..]),
-        parameters: theta.iter().zip(&nominal).enumerate().filter_map(moved).collect(),
-    };
-    (1..=BEGUN_WITH).contains(&(given.laws.len() + given.parameters.len())).then_some(given)
+    let laws = placed(problem, &theta, &model.added[model.known()..]);
+    let given = Given::new(laws, &problem.baseline().theta, &theta);
+    (1..=BEGUN_WITH).contains(&given.count()).then_some(given)
 }
 
 /// The score of `unforeseen` of an explanation.
