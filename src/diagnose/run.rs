@@ -125,7 +125,12 @@ impl Diagnosis<'_> {
             Some(finer) => {
                 let again = Diagnosis { system: &finer, ..self.clone() };
                 let found = again.run_on(records, test, watch)?;
-                Finding { seconds: started.elapsed().as_secs_f64(), ..found }
+                let seconds = started.elapsed().as_secs_f64();
+                match found.interrupted {
+                    // what is known is not given up for half of a second search
+                    true => Finding { seconds, interrupted: true, ..finding },
+                    false => Finding { seconds, ..found },
+                }
             }
         };
         watch.report(1.0, "done");
