@@ -150,7 +150,8 @@ fn what_a_sensor_adds_moves_the_next_state() {
         let (theta, values) = (plan.signals.theta(), plan.effect_values());
         let wave = |by: f64| (0..samples).map(|k| (by * k as f64).sin()).collect();
         let inputs = vec![wave(0.3), wave(0.2)];
-        let drive = Drive { inputs, segments: vec![0..samples], clocks: vec![0.0] };
+        let drive =
+            Drive { inputs, segments: std::iter::once(0..samples).collect(), clocks: vec![0.0] };
         let mut of = Transition::new(system, &plan, &drive, (&theta, &values), false).unwrap();
         let (n, ny) = (of.states(), plan.sizes.y);
         let (mut y, mut c) = (vec![0.0; ny], vec![0.0; ny * n]);
