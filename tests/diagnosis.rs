@@ -22,6 +22,7 @@ mod other_plants;
 mod plan;
 mod report;
 mod said;
+mod sensor_in_loop;
 mod shapeless;
 mod vehicles;
 mod written_effect;

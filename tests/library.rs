@@ -8,6 +8,7 @@ mod files;
 mod fitted_model;
 mod fuzz;
 mod house;
+mod initial_state;
 mod linear;
 mod optimise;
 mod real;

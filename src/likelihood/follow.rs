@@ -80,6 +80,7 @@ pub(crate) fn follow(
     let mut seen = vec![0.0; sources];
     let mut kalman = Kalman::new(&layout);
     let mut to = plant.jacobian();
+    path.read.resize(len * to.read.len(), 0.0);
     let (mut x, mut slow) = (vec![0.0; n], vec![0.0; layout.len()]);
     let (mut next, mut force) = (vec![0.0; n], vec![0.0; nf]);
     let mut row = vec![0; ny];
@@ -156,6 +157,7 @@ pub(crate) fn follow(
             plant.advance(k, &force, &mut next, &mut to);
             path.a[k * n * n..][..n * n].copy_from_slice(&to.a);
             path.g[k * n * nf..][..n * nf].copy_from_slice(&to.g);
+            path.read[k * to.read.len()..][..to.read.len()].copy_from_slice(&to.read);
             path.theta[k * n * nt..][..n * nt].copy_from_slice(&to.theta);
             std::mem::swap(&mut x, &mut next);
             for (i, part) in layout.parts(noise) {
@@ -195,6 +197,7 @@ fn blank(
         segments: drive.segments.clone(),
         a: zeros(n * n),
         g: zeros(n * nf),
+        read: vec![],
         d: vec![],
         c: zeros(ny * n),
         e: vec![f64::NAN; ny * len],

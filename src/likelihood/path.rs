@@ -19,6 +19,8 @@ pub(crate) struct Path {
     /// Next states along states, and along forces.
     pub a: Vec<f64>,
     pub g: Vec<f64>,
+    /// Next states along what sensors add to the outputs, of a law that reads these back; else empty.
+    pub read: Vec<f64>,
     /// Outputs along states, and along forces where these enter rates that an output reads.
     pub c: Vec<f64>,
     pub d: Vec<f64>,
@@ -54,6 +56,11 @@ impl Path {
         &self.g[k * self.n * self.forces..][..self.n * self.forces]
     }
 
+    /// Next state `i` along what the sensor of output `o` adds: 0 where that is not fed back.
+    pub fn read(&self, k: usize, i: usize, o: usize) -> f64 {
+        self.read.get((k * self.n + i) * self.outputs + o).copied().unwrap_or(0.0)
+    }
+
     /// Whether the linearisation at `k` is that at the sample before.
     pub fn is_as_before(&self, k: usize) -> bool {
         self.as_before.get(k).is_some_and(|same| *same)
@@ -70,6 +77,7 @@ impl Path {
                 && equal(&self.a, n * n, k)
                 && equal(&self.g, n * nf, k)
                 && equal(&self.c, ny * n, k)
+                && (self.read.is_empty() || equal(&self.read, ny * n, k))
                 && (self.d.is_empty() || equal(&self.d, ny * nf, k))
         };
         self.as_before = (0..self.len).map(same).collect();

@@ -2,6 +2,8 @@
 //!
 //! With the gains K held, a law w = theta phi at a force site moves the predicted state by d and the
 //! innovations by t = -C d, less phi at an output's own site and D phi where it reads the force: d+ = d- + K t, d-[k+1] = F d+ + G phi(k),
+//! with dF/dy phi(k) in the place of G phi(k) where a known controller reads that output.
+//!
 //! z-tangent L^-1 t. phi is evaluated at the filtered state, which depends on the past only: under the
 //! null the score sum(t' z) is a martingale of mean zero, in closed loop too. A parameter's columns are
 //! dF/dtheta and dh/dtheta.
@@ -103,7 +105,7 @@ pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[(Site, Ve
                     match *site {
                         Site::Force(c) => *to += g[i * nf + c] * phi[k],
                         Site::Parameter(p) => *to += path.theta[(k * n + i) * nt + p] * phi[k],
-                        Site::Output(_) => {}
+                        Site::Output(o) => *to += path.read(k, i, o) * phi[k],
                     }
                 }
             }

@@ -44,7 +44,7 @@ pub fn answer<R: LaneNumber>(
     let sizes = Sizes::of(&law.signals());
     let [theta, x, u, w] = lists;
     let mut derived = vec![R::constant(0.0); packs * sizes.derived];
-    let block = Block { sizes, packs, theta, derived: &[], x, u, w, time };
+    let block = Block { sizes, packs, theta, derived: &[], x, u, w, read: &[], time };
     if sizes.derived > 0 {
         law.answer(Ask::Derived, R::call(&block, &mut derived));
     }

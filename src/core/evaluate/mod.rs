@@ -3,6 +3,7 @@
 mod error;
 mod forgetting;
 mod metric;
+mod reach;
 mod run;
 mod simulate;
 mod want;

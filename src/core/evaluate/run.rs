@@ -207,7 +207,10 @@ impl<'a> Run<'a> {
             segments: std::iter::once(segment.start..end).collect(),
             clocks: vec![clock],
         };
-        let scales: Vec<f64> = self.state_scales(&drive, &initial);
+        let (course, track) = self.course(&drive, &initial);
+        let reach = self.reach(&drive, &initial, &track);
+        let scales = course.iter().zip(&reach).map(|(course, reach)| course.max(reach.abs()));
+        let scales: Vec<f64> = scales.map(|size| if size > 0.0 { size } else { 1.0 }).collect();
         let unknowns = initial
             .iter()
             .zip(&guess)
@@ -231,21 +234,26 @@ impl<'a> Run<'a> {
 
     /// Sizes of the states: their initial values, their course, or 1.
     pub(super) fn state_scales(&self, drive: &Drive, initial: &[f64]) -> Vec<f64> {
+        let (sizes, _) = self.course(drive, initial);
+        sizes.into_iter().map(|size| if size > 0.0 { size } else { 1.0 }).collect()
+    }
+
+    /// Sizes of the states from their initial values and their course, 0 where both are, and the
+    /// simulation that shows it.
+    fn course(&self, drive: &Drive, initial: &[f64]) -> (Vec<f64>, Track) {
         use crate::system::Origin;
         let seen = self.system.run_seen(&self.plan, drive, &self.lane(vec![initial.to_vec()]));
-        (0..initial.len())
-            .map(|i| {
-                let entry = self.plan.sources.at(Origin::State(i));
-                let course = entry.map_or(&[][..], |e| &seen.seen[e][..]);
-                let finite = course.iter().filter(|v| v.is_finite());
-                let (mut low, mut high) = (initial[i], initial[i]);
-                for &v in finite {
-                    (low, high) = (low.min(v), high.max(v));
-                }
-                let size = (high - low).max(initial[i].abs());
-                if size > 0.0 { size } else { 1.0 }
-            })
-            .collect()
+        let sizes = (0..initial.len()).map(|i| {
+            let entry = self.plan.sources.at(Origin::State(i));
+            let course = entry.map_or(&[][..], |e| &seen.seen[e][..]);
+            let finite = course.iter().filter(|v| v.is_finite());
+            let (mut low, mut high) = (initial[i], initial[i]);
+            for &v in finite {
+                (low, high) = (low.min(v), high.max(v));
+            }
+            (high - low).max(initial[i].abs())
+        });
+        (sizes.collect(), seen)
     }
 
     fn residuals(&self, track: &Track, range: std::ops::Range<usize>) -> Vec<f64> {

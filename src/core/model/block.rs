@@ -90,6 +90,9 @@ pub struct Block<'a, R> {
     pub u: &'a [R],
     /// What enters the own channels.
     pub w: &'a [R],
+    /// The outputs as their sensors give them, for the next state of a law that reads them back
+    /// ([`Law::fed_back`](super::Law::fed_back)); empty: they read what the law answers.
+    pub read: &'a [R],
     /// Time in s, the same for all packs.
     pub time: R,
 }
@@ -100,6 +103,7 @@ impl<R: Copy> Block<'_, R> {
         let n = self.sizes;
         // what derived numbers are made of has none yet
         let derived = packs.start * n.derived..packs.end * n.derived;
+        let read = packs.start * n.y..packs.end * n.y;
         Self {
             packs: packs.len(),
             theta: &self.theta[packs.start * n.theta..packs.end * n.theta],
@@ -107,6 +111,7 @@ impl<R: Copy> Block<'_, R> {
             x: &self.x[packs.start * n.x..packs.end * n.x],
             u: &self.u[packs.start * n.u..packs.end * n.u],
             w: &self.w[packs.start * n.w..packs.end * n.w],
+            read: self.read.get(read).unwrap_or(&[]),
             ..*self
         }
     }

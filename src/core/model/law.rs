@@ -109,6 +109,13 @@ pub trait Law: Debug + Send + Sync {
         false
     }
 
+    /// Whether this is a discrete-time law that reads its own outputs again, as their sensors give
+    /// them (there is a controller in it): what effects do to an output is then part of what its
+    /// next state follows from, and it finds the outputs in [`Block::read`](super::Block).
+    fn fed_back(&self) -> bool {
+        false
+    }
+
     /// Where a parameter's value stands in the model's own table: keys and list positions
     /// joined by dots (`masses.0`).
     fn key(&self, parameter: &str) -> String {

@@ -71,7 +71,7 @@ impl Linearised {
     }
 
     fn place(&self) -> Place {
-        *self.place.get_or_init(|| Place { inner: Sizes::of(&self.of.signals()) })
+        *self.place.get_or_init(|| Place::of(self.of.as_ref()))
     }
 
     /// Fills in the linear law's numbers at each pack's parameters and at one time; not numbers
@@ -143,6 +143,7 @@ impl Linearised {
             x: &[],
             u: &[],
             w: &[],
+            read: &[],
             time: F64x8::constant(0.0),
         };
         self.answer(Ask::Derived, Call::F64(&plain, &mut derived));
@@ -276,6 +277,10 @@ impl Law for Linearised {
             Call::Trace(block, out) if ask == Ask::Derived => self.derive_recorded(block, out),
             Call::Trace(block, out) => self.ask(ask, block, out),
         }
+    }
+
+    fn fed_back(&self) -> bool {
+        self.of.fed_back()
     }
 
     fn key(&self, parameter: &str) -> String {

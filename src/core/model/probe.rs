@@ -50,7 +50,7 @@ fn answer<R: LaneNumber>(
     time: R,
 ) -> Vec<R> {
     let mut derived = vec![R::constant(0.0); sizes.derived];
-    let block = Block { sizes, packs: 1, theta, derived: &[], x, u, w, time };
+    let block = Block { sizes, packs: 1, theta, derived: &[], x, u, w, read: &[], time };
     if sizes.derived > 0 {
         law.answer(Ask::Derived, R::call(&block, &mut derived));
     }

@@ -3,6 +3,7 @@
 mod jacobian;
 mod program;
 mod rates;
+mod read_back;
 mod recorded;
 mod replayed;
 mod simulated;
@@ -94,12 +95,14 @@ struct Run<'a, R> {
     u_in: Vec<R>,
     w: Vec<R>,
     no_w: Vec<R>,
-    /// What else enters the own channels and the inputs: the disturbance of a filter.
-    noise: Option<[Vec<R>; 2]>,
+    /// What else enters the own channels, the inputs and what sensors read: the disturbance of a filter.
+    noise: Option<[Vec<R>; 3]>,
     /// How far inputs move until the next sample, where the law finds that in its channels.
     ramp: Vec<R>,
     ramped: bool,
     y: Vec<R>,
+    /// The outputs as sensors give them, where the law reads them back.
+    read: Vec<R>,
     /// Outputs of the last samples, the first of them, and whether sources are written down too.
     outputs: Vec<R>,
     outputs_from: usize,
@@ -170,6 +173,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             ramp: zeros(n.w),
             ramped: law.ramped(),
             y: zeros(n.y),
+            read: zeros(if law.fed_back() { n.y } else { 0 }),
             outputs: vec![],
             outputs_from: 0,
             seen: false,
@@ -280,6 +284,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             x: &self.x,
             u: &self.u[0],
             w: &self.w,
+            read: &[],
             time: R::time(time),
         };
         if known.is_none() {
@@ -304,6 +309,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             x: &self.x,
             u: &self.u[slot],
             w: &self.no_w,
+            read: &[],
             time: R::time(time),
         };
         self.law.answer(ask, R::call(&block, &mut self.y));
@@ -321,6 +327,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             let y = &mut self.y[packs.start * ny..packs.end * ny];
             group.outputs(&at, y, h, self.first);
         }
+        self.read_back();
     }
 
     /// Rates of all states at a trial state: stage `i`, with the inputs at `slot`.
@@ -343,7 +350,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
                 self.u_in.copy_from_slice(u);
             }
             self.w.copy_from_slice(&self.ramp);
-            if let Some([into_w, into_u]) = &self.noise {
+            if let Some([into_w, into_u, _]) = &self.noise {
                 add(&mut self.w, into_w);
                 add(&mut self.u_in, into_u);
             }
@@ -368,6 +375,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             x,
             u,
             w: &self.w,
+            read: &self.read,
             time: R::time(time),
         };
         if let Some(exact) = &mut self.exact {

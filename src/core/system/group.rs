@@ -206,6 +206,7 @@ impl<'a, R: EffectNumber> Group<'a, R> {
                 x: at.x,
                 u: at.u,
                 w: &self.no_w,
+                read: &[],
                 time: at.time,
             };
             at.law.answer(ask, R::call(&block, out));

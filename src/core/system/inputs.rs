@@ -8,6 +8,7 @@ use super::sampling::Hold;
 use super::wiring::EffectNumber;
 
 /// What remembers values along one path.
+#[derive(Clone)]
 pub enum Memory<R> {
     None,
     Lag(LagState<R>),

@@ -6,6 +6,7 @@ use super::tables::Origin;
 use super::wiring::{EffectNumber, Wiring};
 
 /// One effect on one output.
+#[derive(Clone)]
 struct Entry<R> {
     slot: usize,
     output: usize,
@@ -17,6 +18,7 @@ struct Entry<R> {
 }
 
 /// The filters, curves and additions in the paths of the outputs.
+#[derive(Clone)]
 pub struct OutputPaths<R> {
     entries: Vec<Entry<R>>,
     /// Whether outputs are needed at every integration step, not only at samples.

@@ -9,6 +9,9 @@
 //! g[k] = G[k]' lambda[k+1] + D[k]' rho[k],   lambda[k] = A[k]' lambda[k+1] + C[k]' rho[k],   lambda[end] = 0
 //! ```
 //!
+//! What a sensor adds to y has rho[k] + R[k]' lambda[k+1] in the place of g[k], with R = dF/dy where the model
+//! reads its outputs back.
+//!
 //! (adjoint-state method: Plessix, Geophysical Journal International 167, 2006; Giles and Pierce, Flow,
 //! Turbulence and Combustion 65, 2000). What laws explain by such sums is in `explained`.
 
@@ -143,12 +146,16 @@ impl Adjoint {
             if self.begins.binary_search(&(at + 1)).is_ok() {
                 lambda.fill(0.0);
             }
-            let Slopes { a, g, c, d } = &course.slopes[course.at[at]];
+            let Slopes { a, g, read, c, d } = &course.slopes[course.at[at]];
             let (mut into, mut before) = (vec![0.0; forces * sums], vec![0.0; n * sums]);
+            let mut seen = rho[at].clone();
             for i in 0..n {
                 let own = &lambda[i * sums..][..sums];
                 spread(&mut into, &g[i * forces..][..forces], own);
                 spread(&mut before, &a[i * n..][..n], own);
+                if !read.is_empty() {
+                    spread(&mut seen, &read[i * ny..][..ny], own);
+                }
             }
             for o in 0..ny {
                 let own = &rho[at][o * sums..][..sums];
@@ -160,7 +167,7 @@ impl Adjoint {
             for (place, weights) in self.weights.iter_mut().enumerate() {
                 let from = match place < forces {
                     true => &into[place * sums..][..sums],
-                    false => &rho[at][(place - forces) * sums..][..sums],
+                    false => &seen[(place - forces) * sums..][..sums],
                 };
                 weights[at * sums..][..sums].copy_from_slice(from);
             }

@@ -1,6 +1,7 @@
 //! The course of a model with its derivatives, sample by sample: what an adjoint is followed back along.
 //!
-//! A = dF/dx, G = dF/dw, C = dh/dx and, where an output reads rates, D = dh/dw, by forward differentiation
+//! A = dF/dx, G = dF/dw, C = dh/dx and, where an output reads rates, D = dh/dw, where outputs are read
+//! back, R = dF/dy, by forward differentiation
 //! (Griewank and Walther, "Evaluating derivatives", 2nd ed., 2008, ch. 3).
 
 use crate::fit::problem::Problem;
@@ -15,6 +16,8 @@ pub(super) const AT_ONCE: usize = 128;
 pub(super) struct Slopes {
     pub a: Vec<f64>,
     pub g: Vec<f64>,
+    /// Empty where outputs are not read back.
+    pub read: Vec<f64>,
     pub c: Vec<f64>,
     /// Empty where no output reads rates.
     pub d: Vec<f64>,
@@ -60,7 +63,7 @@ impl Course {
             seen: vec![vec![]; sources],
             begins: vec![],
         };
-        let bytes = 8 * (to.a.len() + to.g.len() + c.len() + d.len());
+        let bytes = 8 * (to.a.len() + to.g.len() + to.read.len() + c.len() + d.len());
         for (number, segment) in drive.segments.iter().enumerate() {
             course.begins.push(course.at.len());
             along.start(number);
@@ -79,8 +82,8 @@ impl Course {
                 along.see(&mut seen);
                 course.seen.iter_mut().zip(&seen).for_each(|(to, v)| to.push(*v));
                 along.advance(k, &still, &mut x, &mut to);
-                let (a, g) = (to.a.clone(), to.g.clone());
-                let now = Slopes { a, g, c: c.clone(), d: d.clone() };
+                let (a, g, read) = (to.a.clone(), to.g.clone(), to.read.clone());
+                let now = Slopes { a, g, read, c: c.clone(), d: d.clone() };
                 // those of a linear model are the same all along
                 if course.slopes.last() != Some(&now) {
                     course.slopes.push(now);

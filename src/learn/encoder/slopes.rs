@@ -55,7 +55,17 @@ impl<'a> Map<'a> {
         let mut derived = zeros(sizes.derived);
         if sizes.derived > 0 {
             let (x, u, time) = (&zeros(sizes.x)[..], &zeros(sizes.u)[..], Dual64::constant(0.0));
-            let block = Block { sizes, packs: 1, theta: &theta, derived: &[], x, u, w: &w, time };
+            let block = Block {
+                sizes,
+                packs: 1,
+                theta: &theta,
+                derived: &[],
+                x,
+                u,
+                w: &w,
+                read: &[],
+                time,
+            };
             system.model.answer(Ask::Derived, Dual64::call(&block, &mut derived));
         }
         Self { system, plan, scales, theta, w, derived }
@@ -141,7 +151,7 @@ impl<'a> Map<'a> {
             let (theta, derived) = (&self.theta, &self.derived);
             let w = if ramped { ramp } else { &self.w[..] };
             let time = Dual64::constant(0.0);
-            let block = Block { sizes, packs: 1, theta, derived, x, u, w, time };
+            let block = Block { sizes, packs: 1, theta, derived, x, u, w, read: &[], time };
             let mut out = vec![Dual64::constant(0.0); rows];
             law.answer(ask, Dual64::call(&block, &mut out));
             for (row, out) in out.iter().enumerate() {

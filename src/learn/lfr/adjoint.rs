@@ -83,8 +83,17 @@ impl Adjoint {
             };
             let time = Trace::given(Given::Time, 0.0);
             let mut derived = vec![Trace::constant(0.0); sizes.derived];
-            let block =
-                Block { sizes, packs: 1, theta: &theta, derived: &[], x: &x, u: &u, w: &w, time };
+            let block = Block {
+                sizes,
+                packs: 1,
+                theta: &theta,
+                derived: &[],
+                x: &x,
+                u: &u,
+                w: &w,
+                read: &[],
+                time,
+            };
             if sizes.derived > 0 {
                 law.answer(Ask::Derived, Trace::call(&block, &mut derived));
             }

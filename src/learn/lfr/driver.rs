@@ -144,7 +144,7 @@ impl<'a, E: Number> Driver<'a, E> {
         if n.derived > 0 {
             let time = R::constant(0.0);
             let (theta, w, x, u) = (&theta[..], &w[..], &x[..], &u[..]);
-            let block = Block { sizes: n, packs, theta, derived: &[], x, u, w, time };
+            let block = Block { sizes: n, packs, theta, derived: &[], x, u, w, read: &[], time };
             self.law.answer(Ask::Derived, R::call(&block, &mut derived));
         }
         Constants { theta, derived, w }
@@ -188,6 +188,7 @@ impl<'a, E: Number> Driver<'a, E> {
                     x: &x[from * sizes.x..][..packs * sizes.x],
                     u: &u[from * sizes.u..][..packs * sizes.u],
                     w: &w[from * each..][..packs * sizes.w],
+                    read: &[],
                     time,
                 };
                 let n = sizes.answer(ask);
@@ -195,7 +196,7 @@ impl<'a, E: Number> Driver<'a, E> {
             }
             return;
         }
-        let block = Block { sizes, packs, theta, derived, x, u, w, time: time(0) };
+        let block = Block { sizes, packs, theta, derived, x, u, w, read: &[], time: time(0) };
         for (pack, out) in out.chunks_mut(sizes.answer(ask).max(1)).enumerate() {
             self.law.answer(ask, R::call(&one(&block, pack, time(pack)), out));
         }
@@ -210,7 +211,7 @@ impl<'a, E: Number> Driver<'a, E> {
     ) -> bool {
         let (sizes, packs, wants_u) = (self.sizes, per_row::<E>(), self.wants_u);
         let Constants { theta, derived, w } = &self.plain;
-        let block = Block { sizes, packs, theta, derived, x, u, w, time: time(0) };
+        let block = Block { sizes, packs, theta, derived, x, u, w, read: &[], time: time(0) };
         if !self.timed {
             let pull = Pull { lambda, x: to_x, u: to_u, wants_u };
             return self.law.pull(E::pull(&block, pull));

@@ -24,7 +24,7 @@ impl<R: LaneNumber> Known<'_, R> {
         if law.ramped() {
             w[..ramp.len()].copy_from_slice(ramp);
         }
-        let question = Question { sizes, packs: 1, theta, derived, x, u, w: &w, time };
+        let question = Question { sizes, packs: 1, theta, derived, x, u, w: &w, read: &[], time };
         law.answer(ask, R::call(&question, out));
     }
 }

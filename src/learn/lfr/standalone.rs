@@ -124,6 +124,7 @@ impl AugmentedModel {
                     x,
                     u,
                     w,
+                    read: &[],
                     time: question.time,
                 };
                 law.answer(ask, R::call(&own, out));

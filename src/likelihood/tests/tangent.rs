@@ -1,11 +1,14 @@
 //! Tangents of the innovations against differences of the filter itself.
 
-use super::plants::{GANTRY, Sizes, excitation, simulate, system, with};
+use super::plants::{GANTRY, OSCILLATOR, Sizes, excitation, simulate, system, with};
 use crate::follow::Wanted;
 use crate::noise::Slow;
 use crate::predictor::{Predictor, column};
 use crate::replay::Pass;
 use crate::tangent::{Site, gram};
+use lacuna_core::file::{Format, parse};
+// registers closed loops
+use lacuna_learn as _;
 
 #[test]
 fn scores_are_slopes_of_the_likelihood() {
@@ -53,4 +56,38 @@ fn scores_are_slopes_of_the_likelihood() {
         let size = sums.square[(which, which)].sqrt();
         assert!(off < 0.05 * size, "{which}: {} {difference} {size}", -sums.slope[which]);
     }
+}
+
+/// An offset of a sensor that a known controller reads moves what is predicted, and the plant too.
+#[test]
+fn scores_of_a_sensor_in_a_loop_are_slopes_of_the_likelihood() {
+    let controller = "[controller]\nreferences = [\"r\"]\nmeasured = [\"position\"]\ndrives = [\"force\"]\n\
+        [controller.law.lti]\nA = [[0.7]]\nB = [[0.3, -0.3]]\nC = [[-8.0]]\nD = [[11.0, -11.0]]\n";
+    let looped = format!("{OSCILLATOR}{controller}");
+    let plant = system(&looped);
+    let sizes = Sizes { measurement: vec![0.01], ..Sizes::default() };
+    let record = simulate(&plant, &excitation(400, 0.05, 1.0, 2), &sizes, 3);
+    let predictor = Predictor::new(&plant, std::slice::from_ref(&record)).unwrap();
+    let mut noise = predictor.white(vec![1e-4]);
+    noise.white[1] = 0.01;
+    let wanted = Wanted { theta: false, seen: true, gate: None };
+    let run = predictor.run(&predictor.model, &noise, wanted).unwrap();
+    let pass = Pass::of(&run.path, &noise, false);
+    let sums = gram(&run.path, &pass, &noise, &[(Site::Output(0), vec![1.0; run.path.len])]);
+    let exact = |value: f64| {
+        let bias = parse(&with_bias(value), "bias.toml", Format::Toml).unwrap();
+        let mut moved = system(&looped);
+        moved.effects = bias.effects;
+        let mut moved = Predictor::new(&moved, std::slice::from_ref(&record)).unwrap();
+        moved.start = predictor.start.clone();
+        moved.run(&moved.model, &noise, Wanted::default()).unwrap().log_likelihood
+    };
+    let difference = (exact(1e-5) - exact(-1e-5)) / 2e-5;
+    let size = sums.square[(0, 0)].sqrt();
+    assert!((-sums.slope[0] - difference).abs() < 1e-3 * size, "{} {difference}", -sums.slope[0]);
+    assert!(run.path.read(5, 1, 0).abs() > 0.1);
+}
+
+fn with_bias(value: f64) -> String {
+    format!("{OSCILLATOR}[[effects]]\ninto = \"position\"\neffect.bias = {{ value = {value:?} }}\n")
 }

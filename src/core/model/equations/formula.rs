@@ -87,6 +87,7 @@ impl Formula {
             x: seen,
             u: &[],
             w: &[],
+            read: &[],
             time: R::constant(0.0),
         };
         run(&self.program, 1, &block, out);

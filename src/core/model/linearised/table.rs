@@ -9,18 +9,27 @@ use crate::real::{F64x8, Real};
 type D = Dual64;
 
 /// Where the numbers stand behind those that the inner law derives: for every state its
-/// constant, then the slopes along x, u, w; for every output its constant, then those along x, u.
+/// constant, then the slopes along x, u, w and, of a law that reads its outputs back, along what
+/// sensors add to these; for every output its constant, then those along x, u.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     /// Sizes of the inner law.
     pub inner: Sizes,
+    /// Outputs that the inner law reads back.
+    pub read: usize,
 }
 
 impl Place {
+    /// Where the numbers of a law stand.
+    pub fn of(law: &dyn StateSpaceModel) -> Self {
+        let inner = Sizes::of(&law.signals());
+        Self { inner, read: if law.fed_back() { inner.y } else { 0 } }
+    }
+
     /// How many numbers a row has.
     fn width(self, ask: Ask) -> usize {
         let n = self.inner;
-        1 + n.x + n.u + if ask == Ask::Derivative { n.w } else { 0 }
+        1 + n.x + n.u + if ask == Ask::Derivative { n.w + self.read } else { 0 }
     }
 
     /// How many numbers there are.
@@ -37,17 +46,23 @@ impl Place {
 }
 
 per_lanes! {
-    /// The answer of the linear law: constant + slopes times (x, u, w).
-    fn rows[; R](block: &Block<'_, R>, first: usize, width: usize, out: &mut [R]) {
-        let n = block.sizes;
+    /// The answer of the linear law: constant + slopes times (x, u, w, what sensors add).
+    fn rows[; R](
+        block: &Block<'_, R>,
+        added: &[R],
+        place: (usize, usize),
+        out: &mut [R],
+    ) {
+        let (n, (first, width)) = (block.sizes, place);
         for (pack, out) in out.chunks_exact_mut(out.len() / block.packs).enumerate() {
             let table = &block.derived[pack * n.derived..][..n.derived][first..];
             let (x, u) = (&block.x[pack * n.x..][..n.x], &block.u[pack * n.u..][..n.u]);
             let w = &block.w[pack * n.w..][..n.w];
+            let added = added.get(pack * n.y..(pack + 1) * n.y).unwrap_or(&[]);
             for (out, row) in out.iter_mut().zip(table.chunks_exact(width)) {
                 let mut sum = row[0];
                 let mut slopes = &row[1..];
-                for values in [x, u, w] {
+                for values in [x, u, w, added] {
                     for (&slope, &value) in slopes.iter().zip(values) {
                         sum += slope * value;
                     }
@@ -61,9 +76,16 @@ per_lanes! {
 
 /// What the linear law answers, from the numbers among the block's derived ones.
 pub(super) fn answer<R: LaneNumber>(place: Place, ask: Ask, block: &Block<'_, R>, out: &mut [R]) {
-    if !out.is_empty() {
-        rows(block, place.first(ask), place.width(ask), out);
+    if out.is_empty() {
+        return;
     }
+    let mut added = block.read.to_vec();
+    if !added.is_empty() {
+        let mut y = added.clone();
+        answer(place, Ask::Output, &Block { read: &[], ..*block }, &mut y);
+        added.iter_mut().zip(y).for_each(|(read, y)| *read -= y);
+    }
+    rows(block, &added, (place.first(ask), place.width(ask)), out);
 }
 
 /// Where the numbers of a pack go: `skip` numbers behind the first of `stride`.
@@ -86,7 +108,8 @@ pub(super) fn fill(
     let theta: Vec<D> = theta.iter().map(|&v| D::fixed(v)).collect();
     let zero = D::constant(0.0);
     // all packs' states, then their inputs, then their channels
-    let (inputs, channels, end) = (packs * n.x, packs * (n.x + n.u), packs * (n.x + n.u + n.w));
+    let (inputs, channels) = (packs * n.x, packs * (n.x + n.u));
+    let end = packs * (n.x + n.u + n.w);
     let mut point = vec![zero; end];
     for (to, &at) in point.iter_mut().zip(x.iter().cycle().take(inputs)) {
         to.value = F64x8::constant(at);
@@ -99,7 +122,8 @@ pub(super) fn fill(
     if n.derived > 0 {
         let (x, rest) = point.split_at(inputs);
         let (u, w) = rest.split_at(channels - inputs);
-        let block = Block { sizes: n, packs, theta: &theta, derived: &[], x, u, w, time };
+        let block =
+            Block { sizes: n, packs, theta: &theta, derived: &[], x, u, w, read: &[], time };
         of.answer(Ask::Derived, D::call(&block, &mut derived));
     }
 
@@ -119,7 +143,8 @@ pub(super) fn fill(
         }
         let (x, rest) = point.split_at(inputs);
         let (u, w) = rest.split_at(channels - inputs);
-        let block = Block { sizes: n, packs, theta: &theta, derived: &derived, x, u, w, time };
+        let block =
+            Block { sizes: n, packs, theta: &theta, derived: &derived, x, u, w, read: &[], time };
         for ask in [Ask::Derivative, Ask::Output] {
             let (width, height) = (place.width(ask), n.answer(ask));
             let answers = &mut answers[..packs * height];
@@ -137,6 +162,14 @@ pub(super) fn fill(
             }
         }
     }
+    if place.read > 0 {
+        point.iter_mut().for_each(|dual| dual.slope = zero.slope);
+        let (x, rest) = point.split_at(inputs);
+        let (u, w) = rest.split_at(channels - inputs);
+        let block =
+            Block { sizes: n, packs, theta: &theta, derived: &derived, x, u, w, read: &[], time };
+        along_read(of, place, block, (rows, out));
+    }
     // value at the point = constant + slopes times the point
     for out in out.chunks_exact_mut(rows.stride) {
         let table = &mut out[rows.skip..][..place.count()];
@@ -148,6 +181,34 @@ pub(super) fn fill(
                     row[0] -= part;
                 }
             }
+        }
+    }
+}
+
+/// Fills in the slopes of the next states along what sensors add to the outputs that are read back.
+fn along_read(
+    of: &dyn StateSpaceModel,
+    place: Place,
+    block: Block<'_, D>,
+    (rows, out): (Rows, &mut [F64x8]),
+) {
+    let (n, zero) = (place.inner, D::constant(0.0));
+    let mut read = vec![zero; block.packs * n.y];
+    of.answer(Ask::Output, D::call(&block, &mut read));
+    let mut answers = vec![zero; block.packs * n.x];
+    let (width, first) = (place.width(Ask::Derivative), rows.skip + 1 + n.x + n.u + n.w);
+    for begin in (0..place.read).step_by(DIRECTIONS) {
+        for (i, dual) in read.iter_mut().enumerate() {
+            dual.slope = zero.slope;
+            if let Some(slope) = (i % n.y).checked_sub(begin).and_then(|d| dual.slope.get_mut(d)) {
+                *slope = F64x8::constant(1.0);
+            }
+        }
+        of.answer(Ask::Derivative, D::call(&Block { read: &read, ..block }, &mut answers));
+        for (at, dual) in answers.iter().enumerate() {
+            let row = at / n.x * rows.stride + at % n.x * width + first;
+            let to = out[row..][..place.read][begin..].iter_mut();
+            to.zip(&dual.slope).for_each(|(to, slope)| *to = *slope);
         }
     }
 }

@@ -47,7 +47,8 @@ fn answers<R: LaneNumber>(law: &dyn Law, ask: Ask, theta: &[R], at: [&[f64]; 3])
     let [x, u, w] = at.map(|values| values.iter().map(|&v| R::constant(v)).collect::<Vec<R>>());
     let mut derived = vec![R::constant(0.0); sizes.derived];
     let time = R::constant(0.0);
-    let block = Block { sizes, packs: 1, theta, derived: &[], x: &x, u: &u, w: &w, time };
+    let block =
+        Block { sizes, packs: 1, theta, derived: &[], x: &x, u: &u, w: &w, read: &[], time };
     law.answer(Ask::Derived, R::call(&block, &mut derived));
     let mut out = vec![R::constant(0.0); sizes.answer(ask)];
     law.answer(ask, R::call(&Block { derived: &derived, ..block }, &mut out));

@@ -7,6 +7,9 @@ pub struct Jacobian {
     pub a: Vec<f64>,
     /// Next states along what enters own channels and inputs.
     pub g: Vec<f64>,
+    /// Next states along what is read at the outputs beyond what the model says, of a law that reads
+    /// them back; else empty.
+    pub read: Vec<f64>,
     /// Next states along parameters, where asked for.
     pub theta: Vec<f64>,
 }

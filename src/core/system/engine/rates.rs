@@ -21,7 +21,7 @@ impl<R: EffectNumber> Run<'_, R> {
         }
         self.u_in.copy_from_slice(&self.u[0]);
         self.w.copy_from_slice(&self.ramp);
-        if let Some([into_w, into_u]) = &self.noise {
+        if let Some([into_w, into_u, _]) = &self.noise {
             add(&mut self.w, into_w);
             add(&mut self.u_in, into_u);
         }
@@ -41,6 +41,7 @@ impl<R: EffectNumber> Run<'_, R> {
             x: &self.x,
             u: &self.u_in,
             w: &self.w,
+            read: &[],
             time: R::time(self.time),
         };
         self.law.answer(Ask::Derivative, R::call(&with, &mut self.k[0]));

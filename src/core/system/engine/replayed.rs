@@ -31,6 +31,8 @@ pub(super) struct Replayed<'a> {
     drive: &'a Drive,
     states: usize,
     forces: usize,
+    /// Outputs that the law reads back: what is added to them enters behind the forces.
+    read: usize,
     parameters: usize,
     observed: Program,
     seen: Program,
@@ -54,15 +56,16 @@ impl<'a> Replayed<'a> {
     ) -> Option<Self> {
         let n = plan.sizes;
         let (states, forces) = (n.x + plan.states, n.w + n.u);
+        let read = if law.fed_back() { n.y } else { 0 };
         let parameters = if wants_parameters { n.theta } else { 0 };
-        let directions = states + forces + parameters;
+        let directions = states + forces + read + parameters;
         // an exact step is worked out before the run, from parameters without slopes
         if directions > MOST || plan.linear && wants_parameters {
             return None;
         }
         let (asked, tape) = Tape::record(|| asked(law, plan, lane, parameters));
         let asked = asked?;
-        let sizes = Sizes { states, forces, parameters };
+        let sizes = Sizes { states, forces: forces + read, parameters };
         let program = |results: &[Node], directions| Program::of(&tape, results, directions, sizes);
         let next = program(&asked.next, directions)?;
         let onward = (0..states).filter_map(|i| Some((i, next.leaf(Given::State(i as u32))?)));
@@ -76,6 +79,7 @@ impl<'a> Replayed<'a> {
             drive,
             states,
             forces,
+            read,
             parameters,
             x: vec![0.0; states],
             clock: 0.0,
@@ -119,7 +123,7 @@ impl<'a> Replayed<'a> {
             *y = program.forward.value(o);
             program.forward.slopes(o, 0, &mut c[o * n..][..n]);
             if nt > 0 {
-                program.forward.slopes(o, n + self.forces, &mut theta[o * nt..][..nt]);
+                program.forward.slopes(o, n + self.forces + self.read, &mut theta[o * nt..][..nt]);
             }
         }
     }
@@ -143,7 +147,7 @@ impl<'a> Replayed<'a> {
     pub fn advance(&mut self, k: usize, w: &[f64], x: &mut [f64], to: &mut Jacobian) {
         let first = self.parameters;
         let force = |given| match given {
-            Given::Parameter(i) => (i as usize).checked_sub(first).map(|force| w[force]),
+            Given::Parameter(i) => w.get((i as usize).checked_sub(first)?).copied(),
             _ => None,
         };
         self.next.give(|given| state(given, &self.x).or_else(|| force(given)));
@@ -157,12 +161,13 @@ impl<'a> Replayed<'a> {
             self.next.forward.run();
         }
         let program = &self.next;
-        let (n, forces, nt) = (self.states, self.forces, self.parameters);
+        let (n, forces, read, nt) = (self.states, self.forces, self.read, self.parameters);
         for (i, x) in x.iter_mut().enumerate() {
             *x = program.forward.value(i);
             program.forward.slopes(i, 0, &mut to.a[i * n..][..n]);
             program.forward.slopes(i, n, &mut to.g[i * forces..][..forces]);
-            program.forward.slopes(i, n + forces, &mut to.theta[i * nt..][..nt]);
+            program.forward.slopes(i, n + forces, &mut to.read[i * read..][..read]);
+            program.forward.slopes(i, n + forces + read, &mut to.theta[i * nt..][..nt]);
         }
     }
 }
@@ -209,8 +214,9 @@ fn asked(law: &dyn Law, plan: &Plan, lane: &Lane, parameters: usize) -> Option<A
     run.theta_now.copy_from_slice(&run.theta);
     let theta = run.theta[..parameters].iter().map(|value| value.value()).collect();
     let force = |i: usize| Trace::given(Given::Parameter((parameters + i) as u32), 0.0);
-    let (into_w, into_u) = ((0..n.w).map(force), (n.w..n.w + n.u).map(force));
-    run.noise = Some([into_w.collect(), into_u.collect()]);
+    let forces = n.w + n.u;
+    let into = [0..n.w, n.w..forces, forces..forces + run.read.len()];
+    run.noise = Some(into.map(|each| each.map(force).collect()));
     run.start(&groups, 0);
     if run.give_states().len() != states {
         return None;

@@ -4,6 +4,7 @@
 //! What paths of outputs and play remember beside states (lag, delay) is taken as known: it has no columns.
 
 use super::super::lane::{Drive, Lane};
+use super::super::outputs::OutputPaths;
 use super::super::plan::Plan;
 use super::Run;
 use super::jacobian::Jacobian;
@@ -22,6 +23,8 @@ pub(super) struct Simulated<'a> {
     /// Zero with the slopes of the state that it stands for, pack by pack.
     x: Vec<Dual64>,
     s: Vec<Dual64>,
+    /// What the paths of outputs remembered before these were read, where the law reads them back.
+    before: Option<OutputPaths<Dual64>>,
     parameters: bool,
 }
 
@@ -34,21 +37,23 @@ impl<'a> Simulated<'a> {
         parameters: bool,
     ) -> Option<Self> {
         let n = plan.sizes;
-        let (states, forces) = (n.x + plan.states, n.w + n.u);
-        let directions = states + forces + if parameters { n.theta } else { 0 };
+        let read = if law.fed_back() { n.y } else { 0 };
+        let (states, entering) = (n.x + plan.states, n.w + n.u + read);
+        let directions = states + entering + if parameters { n.theta } else { 0 };
         let packs = directions.div_ceil(IN_PACK).max(1);
         // a lane for every place: every one carries other directions of the same run
         let lanes = vec![lane.clone(); packs * F64x8::LANES];
         let mut run = Run::<Dual64>::new(law, &[(plan, &lanes)])?;
         (run.inside, run.into_inputs) = (true, true);
         let blank = |count: usize| vec![Dual64::constant(0.0); packs * count];
-        let mut noise = [blank(n.w), blank(n.u)];
+        let mut noise = [blank(n.w), blank(n.u), blank(read)];
         let mut transition = Self {
             drive,
             end: 0,
             packs,
             x: blank(n.x),
             s: blank(plan.states),
+            before: None,
             parameters,
             run: {
                 run.groups.iter_mut().for_each(|group| group.inside = true);
@@ -60,6 +65,7 @@ impl<'a> Simulated<'a> {
         sloped(&mut transition.s, plan.states, &mut first);
         sloped(&mut noise[0], n.w, &mut first);
         sloped(&mut noise[1], n.u, &mut first);
+        sloped(&mut noise[2], read, &mut first);
         transition.run.noise = Some(noise);
         transition.run.drift(0.0);
         if parameters {
@@ -81,6 +87,7 @@ impl<'a> Simulated<'a> {
             x: &run.x,
             u: &run.u[0],
             w: &run.no_w,
+            read: &[],
             time: Dual64::constant(0.0),
         };
         if run.base.sizes.derived > 0 {
@@ -96,6 +103,11 @@ impl<'a> Simulated<'a> {
     /// Own channels and inputs.
     pub fn forces(&self) -> usize {
         self.run.base.sizes.w + self.run.base.sizes.u
+    }
+
+    /// All that enters: own channels, inputs, and what sensors read where that is fed back.
+    fn entering(&self) -> usize {
+        self.forces() + self.run.read.len() / self.packs
     }
 
     pub fn start(&mut self, segment: usize) {
@@ -117,6 +129,7 @@ impl<'a> Simulated<'a> {
         for to in self.run.noise.iter_mut().flatten().flatten() {
             to.value = F64x8::constant(0.0);
         }
+        self.before = (!self.run.read.is_empty()).then(|| self.run.groups[0].outputs.clone());
         self.run.begin(drive, k, self.end, 0);
         let (n, ny) = (self.states(), self.run.base.sizes.y);
         for o in 0..ny {
@@ -124,7 +137,7 @@ impl<'a> Simulated<'a> {
             slopes(&self.run.y, (ny, o), 0, &mut c[o * n..][..n]);
         }
         if self.parameters {
-            let (nt, first) = (self.run.base.sizes.theta, n + self.forces());
+            let (nt, first) = (self.run.base.sizes.theta, n + self.entering());
             for o in 0..ny {
                 slopes(&self.run.y, (ny, o), first, &mut theta[o * nt..][..nt]);
             }
@@ -151,12 +164,17 @@ impl<'a> Simulated<'a> {
     pub fn advance(&mut self, k: usize, w: &[f64], x: &mut [f64], to: &mut Jacobian) {
         let (drive, base) = (self.drive, self.run.base);
         let (n, nx, nw) = (self.states(), base.sizes.x, base.sizes.w);
-        if let Some([into_w, into_u]) = &mut self.run.noise {
+        if let Some([into_w, into_u, _]) = &mut self.run.noise {
             for (all, w) in [(into_w, &w[..nw]), (into_u, &w[nw..])] {
                 for pack in all.chunks_exact_mut(w.len().max(1)) {
                     pack.iter_mut().zip(w).for_each(|(to, &w)| to.value = F64x8::constant(w));
                 }
             }
+        }
+        // what is fed back is read where the states are now
+        if let Some(before) = self.before.take() {
+            self.run.groups[0].outputs = before;
+            self.run.output(base.step());
         }
         self.run.finish();
         for j in 1..base.substeps {
@@ -164,7 +182,8 @@ impl<'a> Simulated<'a> {
             self.run.finish();
         }
         self.run.groups[0].forget_slopes();
-        let (forces, nt) = (self.forces(), to.theta.len() / n.max(1));
+        let (forces, entering) = (self.forces(), self.entering());
+        let (read, nt) = (entering - forces, to.theta.len() / n.max(1));
         for i in 0..n {
             let (all, at) = match i < nx {
                 true => (&self.run.x, (nx, i)),
@@ -173,7 +192,8 @@ impl<'a> Simulated<'a> {
             x[i] = all[at.1].lane(0);
             slopes(all, at, 0, &mut to.a[i * n..][..n]);
             slopes(all, at, n, &mut to.g[i * forces..][..forces]);
-            slopes(all, at, n + forces, &mut to.theta[i * nt..][..nt]);
+            slopes(all, at, n + forces, &mut to.read[i * read..][..read]);
+            slopes(all, at, n + entering, &mut to.theta[i * nt..][..nt]);
         }
     }
 }

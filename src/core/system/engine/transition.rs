@@ -5,7 +5,8 @@
 //! through all effects (Griewank and Walther, "Evaluating Derivatives", 2nd ed., 2008, ch. 3).
 //!
 //! States are those of the model, then those of its effects. w enters the own channels, then the
-//! inputs behind whatever sits in their paths, and is held over the sample.
+//! inputs behind whatever sits in their paths, and is held over the sample. A law that reads its outputs
+//! back has x[k+1] = F(x[k], u[k], w[k], y[k] + r) as well, with dF/dr at r = 0.
 
 use super::super::System;
 use super::super::lane::{Drive, Lane};
@@ -13,6 +14,7 @@ use super::super::plan::Plan;
 use super::jacobian::Jacobian;
 use super::replayed::Replayed;
 use super::simulated::Simulated;
+use crate::model::Law;
 
 /// Samples from which on recording a step takes less time than it saves.
 const WORTH: usize = 100;
@@ -22,6 +24,8 @@ pub struct Transition<'a> {
     way: Way<'a>,
     states: usize,
     forces: usize,
+    /// Outputs that the law reads back.
+    read: usize,
     parameters: usize,
 }
 
@@ -64,15 +68,16 @@ impl<'a> Transition<'a> {
                 Way::Simulated(Box::new(Simulated::new(law, (plan, drive), &lane, parameters)?))
             }
         };
-        Some(Self::of(way, plan, parameters))
+        Some(Self::of(way, (law, plan), parameters))
     }
 
-    fn of(way: Way<'a>, plan: &Plan, parameters: bool) -> Self {
+    fn of(way: Way<'a>, (law, plan): (&dyn Law, &Plan), parameters: bool) -> Self {
         let n = plan.sizes;
         Self {
             way,
             states: n.x + plan.states,
             forces: n.w + n.u,
+            read: if law.fed_back() { n.y } else { 0 },
             parameters: if parameters { n.theta } else { 0 },
         }
     }
@@ -93,6 +98,7 @@ impl<'a> Transition<'a> {
         Jacobian {
             a: vec![0.0; n * n],
             g: vec![0.0; n * self.forces],
+            read: vec![0.0; n * self.read],
             theta: vec![0.0; n * self.parameters],
         }
     }

@@ -74,7 +74,7 @@ fn compare(text: &str, parameters: bool) {
     };
     let law = system.model.as_ref();
     let all = |way| {
-        let of = Transition::of(way, &plan, parameters);
+        let of = Transition::of(way, (law, &plan), parameters);
         course(of, plan.sizes.y, plan.sources.entries.len(), 12)
     };
     let both = (&plan, &drive);

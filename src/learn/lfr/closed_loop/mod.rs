@@ -8,6 +8,17 @@
 //! A plant that integrates or is unstable drifts from its record when it is driven by the input
 //! that was logged; in its loop it does not, and errors along the record stay small enough to
 //! learn from (Forssell and Ljung, Automatica 35, 1999: the direct method in simulation).
+//!
+//! The controller sees what the record holds: an effect on an output that it measures (a sensor's
+//! offset, gain, lag, bounds) is fed back, whether it stands within the plant or is placed on the
+//! loop. With y + s(y) in the place of y, s being what the sensor adds,
+//!
+//! ```text
+//! u_k = C(c_k, r_k, y_k + s(y_k)) + d_k
+//! ```
+//!
+//! (Astrom and Murray, *Feedback Systems*, 2008, section 11.1: a sensor's error enters behind the
+//! plant and before the controller). Faults of the record alone, such as a wrong clock, are not.
 
 mod join;
 mod replay;
@@ -97,6 +108,8 @@ impl ClosedLoop {
                 x: &x,
                 u,
                 w,
+                // a loop within the plant reads the same sensors
+                read: if ask == Ask::Derivative { block.read } else { &[] },
                 time: block.time,
             };
             self.plant.answer(ask, R::call(&question, out));
@@ -116,6 +129,7 @@ impl ClosedLoop {
                 x: c,
                 u: seen,
                 w: &w,
+                read: &[],
                 time: block.time,
             };
             self.controller.law.answer(ask, R::call(&question, out));
@@ -145,8 +159,11 @@ impl ClosedLoop {
                 join(&first, own.derived, &second, law.derived);
             }
             Ask::Derivative => {
-                let mut y = zeros(own.y);
-                plant(Ask::Output, &u, &mut y);
+                let mut y = block.read.to_vec();
+                if y.is_empty() {
+                    y = zeros(own.y);
+                    plant(Ask::Output, &u, &mut y);
+                }
                 let references = self.controller.references.len();
                 let mut seen = vec![];
                 for pack in 0..block.packs {
@@ -219,6 +236,10 @@ impl Law for ClosedLoop {
             Call::Dual32(block, out) => self.reply(ask, block, out),
             Call::Trace(block, out) => self.reply(ask, block, out),
         }
+    }
+
+    fn fed_back(&self) -> bool {
+        true
     }
 
     fn key(&self, parameter: &str) -> String {

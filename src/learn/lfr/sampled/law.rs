@@ -49,6 +49,7 @@ pub(super) fn derived<R: EffectNumber>(
         x: &x,
         u: &u,
         w: &w,
+        read: &[],
         time: block.time,
     };
     law.answer(Ask::Derived, R::call(&own, out));

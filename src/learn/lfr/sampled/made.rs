@@ -35,6 +35,8 @@ pub(super) struct Made {
     /// Whether outputs are needed in every step, and whether what is remembered depends on them.
     pub fine: bool,
     pub remembers_outputs: bool,
+    /// Whether the model reads its outputs back.
+    pub fed_back: bool,
     /// Numbers that are held, and why.
     pub held: Vec<(String, &'static str)>,
     /// Key of each tuned number.
@@ -57,6 +59,7 @@ impl Made {
             ramped: plan.hold == Hold::First,
             fine: false,
             remembers_outputs: false,
+            fed_back: system.model.fed_back(),
             held: vec![],
             keys: vec![],
             plan,

@@ -162,6 +162,10 @@ impl Law for Sampled {
         self.made().as_ref().is_ok_and(|made| made.ramped)
     }
 
+    fn fed_back(&self) -> bool {
+        self.system.model.fed_back()
+    }
+
     fn key(&self, parameter: &str) -> String {
         let model = self.system.model.as_ref();
         let tuned = self.made().as_ref().ok().and_then(|made| made.key(parameter));

@@ -32,6 +32,9 @@ pub(super) struct Room<'a, R> {
     pub(super) given: &'a [R],
     pub(super) ramp: &'a [R],
     pub(super) y: Vec<R>,
+    /// The outputs as sensors give them, where the model reads them back, and where they are given.
+    pub(super) read: Vec<R>,
+    pub(super) given_read: &'a [R],
     /// What every slot gave last, and the first coordinate that it saw.
     pub(super) w: Vec<Vec<R>>,
     pub(super) z: Vec<Vec<R>>,
@@ -68,6 +71,8 @@ impl<'a, R: EffectNumber> Room<'a, R> {
             given: block.u,
             ramp: if made.ramped { block.w } else { &[] },
             y: zeros(n.y),
+            read: vec![],
+            given_read: block.read,
             w: vec![zeros(1); slots],
             z: vec![zeros(1); slots],
         }
@@ -78,8 +83,9 @@ impl<'a, R: EffectNumber> Room<'a, R> {
         let (made, h) = (self.made, self.made.plan.step());
         for j in 0..made.plan.substeps {
             self.begin(j, h);
-            if made.remembers_outputs && (j == 0 || made.fine) {
+            if (made.remembers_outputs || made.fed_back) && (j == 0 || made.fine) {
                 self.readout(h, j as f64 * h);
+                self.read_back();
             }
             self.advance(h, j as f64 * h);
         }
@@ -144,7 +150,7 @@ impl<'a, R: EffectNumber> Room<'a, R> {
 
     pub(super) fn block<'b>(&'b self, x: &'b [R], u: &'b [R], w: &'b [R], time: R) -> Block<'b, R> {
         let (sizes, packs) = (self.made.plan.sizes, self.packs);
-        Block { sizes, packs, theta: &self.now, derived: &self.derived, x, u, w, time }
+        Block { sizes, packs, theta: &self.now, derived: &self.derived, x, u, w, read: &[], time }
     }
 
     /// Outputs now, after everything that sits in their paths.
@@ -175,6 +181,15 @@ impl<'a, R: EffectNumber> Room<'a, R> {
             }
         }
         self.y = y;
+    }
+
+    /// Hands the outputs to a model that reads them back, as this system's sensors give them or as
+    /// they are given.
+    fn read_back(&mut self) {
+        if self.made.fed_back {
+            let given = !self.given_read.is_empty();
+            self.read = if given { self.given_read.to_vec() } else { self.y.clone() };
+        }
     }
 
     /// Adds what effects add to the rates of states to the outputs that read them.
@@ -223,7 +238,8 @@ impl<'a, R: EffectNumber> Room<'a, R> {
             }
         }
         let mut k = std::mem::take(&mut self.k[i]);
-        self.law.answer(Ask::Derivative, R::call(&self.block(&x, &u_in, &w, time), &mut k));
+        let block = Block { read: &self.read, ..self.block(&x, &u_in, &w, time) };
+        self.law.answer(Ask::Derivative, R::call(&block, &mut k));
         if any && !made.plan.declared_channels {
             along(&mut k, None, &w, 1.0);
         }

@@ -94,6 +94,7 @@ fn many<R: LaneNumber>(packs: usize) -> Vec<f64> {
         x: &x,
         u: &u,
         w: &w,
+        read: &[],
         time: R::constant(1.0),
     };
     model.answer(Ask::Derived, R::call(&block, &mut derived));
