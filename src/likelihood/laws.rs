@@ -2,7 +2,8 @@
 //!
 //! A law is linear in its coefficients, so that at every point of the grid each coefficient has one
 //! column, w at coefficient 1 along the filtered coordinate; a law without a coefficient (on its own
-//! path) is a column itself. What remembers (hysteresis, play, lag, delay) is left to a search.
+//! path) is a column itself. What remembers is judged by runs of the filter (`memory.rs`: lag, delay, play), or left to
+//! a search (hysteresis).
 
 use crate::effect::{
     CandidateEffect, EffectBlock, EffectCall, EffectCard, Mechanism, Needs, Role, Search, SignRule,

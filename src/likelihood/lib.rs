@@ -38,6 +38,7 @@ mod lacking;
 mod laws;
 mod linearisations;
 mod local_level;
+mod memory;
 mod missing;
 mod model;
 mod noise;

@@ -124,6 +124,7 @@ impl Predictor {
             let quick = quick.get_or_insert_with(|| self.quick(&null.noise, value));
             fitted.extend(self.fitted(quick, &path, &spots, place));
         }
+        fitted.extend(self.remembering((&path, &null.noise), &spots));
         let sets = self.weighed(&nothing, fitted, &spots);
         Ok(Survey { null, places, sets })
     }

@@ -8,12 +8,13 @@ use rayon::prelude::*;
 use super::error::LikelihoodError;
 use super::evidence::{Evidence, curve_prior, evidence, log_sum};
 use super::laws::{Law, Spot, laws, offsets};
+use super::memory::of_an_instrument;
 use super::noise::Noise;
 use super::path::Path;
 use super::predictor::{Predictor, column};
 use super::replay::Pass;
 use super::share::{between, knots};
-use super::tangent::{Site, gram};
+use super::tangent::{Column, Site, gram};
 use crate::effect::View;
 use crate::system::Origin;
 
@@ -35,6 +36,8 @@ pub(crate) struct Spotted {
     pub z: Vec<f64>,
     pub knots: Vec<f64>,
     pub laws: Vec<Law>,
+    /// Laws that remember what they read.
+    pub remembering: Vec<Law>,
     /// Courses of the loads that laws of it may have, by entry of the table of sources.
     pub loads: Vec<(usize, Vec<f64>)>,
     /// Size of an amplitude: force, output or parameter.
@@ -80,11 +83,18 @@ impl Predictor {
                 _ => vec![],
             };
             let offered: Vec<usize> = loads.iter().map(|load| load.0).collect();
-            let laws = laws(spot, &view(&z, own_path), &offered).into_iter();
+            let view = view(&z, own_path);
+            let laws = laws(spot, &view, &offered).into_iter();
             let laws = laws.filter(|law| self.scope.effect(law.name));
             let laws = laws.map(|law| law.signed(direction)).collect();
+            let remembering = match spot {
+                Spot::OwnPath { input } => of_an_instrument(input, &view),
+                Spot::Channel { .. } => vec![],
+            };
+            let is_asked = |law: &Law| self.scope.effect(law.name);
+            let remembering = remembering.into_iter().filter(is_asked).collect();
             let knots = knots(&z).unwrap_or_default();
-            Spotted { site, source, z, knots, laws, loads, scale }
+            Spotted { site, source, z, knots, laws, remembering, loads, scale }
         };
         let channel = |e| Spot::Channel { velocity: plan.is_velocity(e), angle: plan.is_angle(e) };
         let forces = self.distinct(path);
@@ -124,6 +134,7 @@ impl Predictor {
             z: ones.clone(),
             knots: vec![],
             laws: offsets().into_iter().filter(|law| self.scope.effect(law.name)).collect(),
+            remembering: vec![],
             loads: vec![],
             scale,
         };
@@ -135,8 +146,8 @@ impl Predictor {
             if free && path.theta.len() + path.c_theta.len() > 0 {
                 let scale = PARAMETER * self.model.theta[p].abs();
                 let site = Site::Parameter(p);
-                let (z, knots, laws, loads) = (ones.clone(), vec![], vec![], vec![]);
-                found.push(Spotted { site, source: None, z, knots, laws, loads, scale });
+                let own = offset(site, scale);
+                found.push(Spotted { laws: vec![], ..own });
             }
         }
         Ok(found)
@@ -182,7 +193,7 @@ impl Predictor {
 
 impl Spotted {
     /// All columns: the hats of the free curve, then each law's coefficients; where each begins.
-    fn columns(&self) -> (Vec<(Site, Vec<f64>)>, Vec<usize>) {
+    fn columns(&self) -> (Vec<Column>, Vec<usize>) {
         let mut columns: Vec<Vec<f64>> = vec![vec![0.0; self.z.len()]; self.knots.len()];
         if !self.knots.is_empty() {
             for (k, z) in self.z.iter().enumerate().filter(|(_, z)| z.is_finite()) {
@@ -200,7 +211,7 @@ impl Spotted {
         if let Site::Parameter(_) = self.site {
             columns.push(vec![1.0; self.z.len()]);
         }
-        (columns.into_iter().map(|column| (self.site, column)).collect(), first)
+        (columns.into_iter().map(|column| (self.site, column).into()).collect(), first)
     }
 
     /// The course of a law's load; empty where it has none.
@@ -239,7 +250,7 @@ fn screened(path: &Path, pass: &Pass, noise: &Noise, spot: &Spotted) -> Screened
     };
     let own = |range: std::ops::Range<usize>| {
         let sizes = range.clone().map(|j| {
-            let size = spot.scale / rms(&columns[j].1).max(f64::MIN_POSITIVE);
+            let size = spot.scale / rms(columns[j].values()).max(f64::MIN_POSITIVE);
             if size.is_finite() { size * size } else { 0.0 }
         });
         let prior =

@@ -13,7 +13,7 @@ use super::noise::Noise;
 use super::path::Path;
 use super::replay::Pass;
 use super::screen::Spotted;
-use super::tangent::{Site, gram};
+use super::tangent::{Column, Site, gram};
 
 /// Sets of each size that are fitted.
 const SINGLES: usize = 4;
@@ -35,13 +35,13 @@ pub(crate) fn sets(
     spot: &Spotted,
     offset: Option<&Spotted>,
 ) -> Vec<Vec<Part>> {
-    let mut columns: Vec<(Site, Vec<f64>)> = vec![];
+    let mut columns: Vec<Column> = vec![];
     let mut entries = vec![];
     for own in [Some(spot), offset.filter(|o| o.source != spot.source)].into_iter().flatten() {
         for law in &own.laws {
             let first = columns.len();
             let own_columns = law.columns(&own.z, own.load_of(law)).into_iter();
-            columns.extend(own_columns.map(|column| (own.site, column)));
+            columns.extend(own_columns.map(|column| (own.site, column).into()));
             let columns = (first..columns.len()).collect();
             entries.push(Entry { law, site: own.site, source: own.source, columns });
         }

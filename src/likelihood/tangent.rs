@@ -6,7 +6,7 @@
 //!
 //! z-tangent L^-1 t. phi is evaluated at the filtered state, which depends on the past only: under the
 //! null the score sum(t' z) is a martingale of mean zero, in closed loop too. A parameter's columns are
-//! dF/dtheta and dh/dtheta.
+//! dF/dtheta and dh/dtheta; of a law with a memory the slopes of z are given (`memory.rs`).
 //! Sources: Ljung, "System Identification", 2nd ed., sections 10.3 and 13.4; Astrom, Automatica 16, 1980.
 
 use nalgebra::{DMatrix, DVector};
@@ -29,6 +29,30 @@ pub(crate) enum Site {
     Parameter(usize),
 }
 
+/// What one number changes, sample by sample.
+#[derive(Debug, Clone)]
+pub(crate) enum Column {
+    /// What enters at a site; 1 for a parameter.
+    Entering(Site, Vec<f64>),
+    /// The standardised innovations themselves, those of a sample side by side: of a law with a memory.
+    Innovations(Vec<f64>),
+}
+
+impl From<(Site, Vec<f64>)> for Column {
+    fn from((site, phi): (Site, Vec<f64>)) -> Self {
+        Self::Entering(site, phi)
+    }
+}
+
+impl Column {
+    /// Its numbers.
+    pub fn values(&self) -> &[f64] {
+        match self {
+            Self::Entering(_, values) | Self::Innovations(values) => values,
+        }
+    }
+}
+
 /// Sums over all innovations: T' T and T' z.
 #[derive(Debug, Clone)]
 pub(crate) struct Gram {
@@ -36,8 +60,8 @@ pub(crate) struct Gram {
     pub slope: DVector<f64>,
 }
 
-/// The sums for several columns, each at its site; a parameter's column is 1.
-pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[(Site, Vec<f64>)]) -> Gram {
+/// The sums for several columns.
+pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[Column]) -> Gram {
     let (m, n, nf, ny) = (columns.len(), path.n, path.forces, path.outputs);
     let na = pass.layout.len();
     let nt = path.theta.len() / (path.len * n).max(1);
@@ -60,7 +84,8 @@ pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[(Site, Ve
                 for (i, c) in row.iter().enumerate().filter(|(_, c)| **c != 0.0) {
                     t.iter_mut().zip(&d[i * m..][..m]).for_each(|(t, d)| *t -= c * d);
                 }
-                for (t, (site, phi)) in t.iter_mut().zip(columns) {
+                for (t, column) in t.iter_mut().zip(columns) {
+                    let Column::Entering(site, phi) = column else { continue };
                     match *site {
                         Site::Output(own) if own == o => *t -= phi[k],
                         Site::Force(force) if path.has_direct() => {
@@ -75,8 +100,11 @@ pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[(Site, Ve
                     d[i * m..][..m].iter_mut().zip(&t).for_each(|(d, t)| *d += gain * t);
                 }
                 let over = 1.0 / pass.s[at].sqrt();
-                for (j, t) in t.iter().enumerate() {
-                    let value = t * over;
+                for (j, (t, column)) in t.iter().zip(columns).enumerate() {
+                    let value = match column {
+                        Column::Entering(..) => t * over,
+                        Column::Innovations(slope) => slope[at],
+                    };
                     block[(filled, j)] = value;
                     to.slope[j] += value * pass.z[at];
                 }
@@ -101,7 +129,8 @@ pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[(Site, Ve
                     let f = g[i * nf + c];
                     to.iter_mut().zip(&d[(n + l) * m..][..m]).for_each(|(to, d)| *to += f * d);
                 }
-                for (to, (site, phi)) in to.iter_mut().zip(columns) {
+                for (to, column) in to.iter_mut().zip(columns) {
+                    let Column::Entering(site, phi) = column else { continue };
                     match *site {
                         Site::Force(c) => *to += g[i * nf + c] * phi[k],
                         Site::Parameter(p) => *to += path.theta[(k * n + i) * nt + p] * phi[k],

@@ -52,7 +52,8 @@ impl Predictor {
         let samples = self.observed();
         let base = nothing.criterion(samples);
         let count = |spot: &Spotted| {
-            let mut names: Vec<&str> = spot.laws.iter().map(|law| law.name).collect();
+            let all = spot.laws.iter().chain(&spot.remembering);
+            let mut names: Vec<&str> = all.map(|law| law.name).collect();
             names.dedup();
             names.len() as f64
         };

@@ -73,9 +73,12 @@ impl Context<'_, '_> {
         let gain = gain(&before, &after, &floors);
         let curves_only = causes.iter().all(|c| c.is_data_fault() || c.wording.shape.is_some());
         let is_refuted = !chosen.found.refuted.is_empty();
+        // noise inside the plant takes a simulation away from its record whatever is known of the plant; there a
+        // predictor tells what is missing, by what it does not foresee (Ljung, 1999, section 16.6)
+        let foresees = chosen.is_by_innovations() && chosen.dependence <= DEPENDS;
         let verdict = match (structural, causes.len()) {
             (1.., _) if curves_only && gain.error_removed < EXPLAINED => Verdict::Unexplained,
-            (1.., _) if gain.interval95[1] < MOST => Verdict::Unexplained,
+            (1.., _) if !foresees && gain.interval95[1] < MOST => Verdict::Unexplained,
             // what the search held for the explanation is refuted, and what is left of it is not most
             (1.., _) if is_refuted && gain.interval95[0] < MOST => Verdict::Unexplained,
             (0, 0) if is_refuted => Verdict::Unexplained,

@@ -25,9 +25,9 @@ fn scores_are_slopes_of_the_likelihood() {
     let entries = predictor.model.plan.sources.entries.len();
     let speed = column(&path.seen, entries, 0);
     let columns = vec![
-        (Site::Force(0), speed),
-        (Site::Output(1), vec![1.0; path.len]),
-        (Site::Parameter(1), vec![1.0; path.len]),
+        (Site::Force(0), speed).into(),
+        (Site::Output(1), vec![1.0; path.len]).into(),
+        (Site::Parameter(1), vec![1.0; path.len]).into(),
     ];
     let pass = Pass::of(path, &noise, false);
     let sums = gram(path, &pass, &noise, &columns);
@@ -73,7 +73,7 @@ fn scores_of_a_sensor_in_a_loop_are_slopes_of_the_likelihood() {
     let wanted = Wanted { theta: false, seen: true, gate: None };
     let run = predictor.run(&predictor.model, &noise, wanted).unwrap();
     let pass = Pass::of(&run.path, &noise, false);
-    let sums = gram(&run.path, &pass, &noise, &[(Site::Output(0), vec![1.0; run.path.len])]);
+    let sums = gram(&run.path, &pass, &noise, &[(Site::Output(0), vec![1.0; run.path.len]).into()]);
     let exact = |value: f64| {
         let bias = parse(&with_bias(value), "bias.toml", Format::Toml).unwrap();
         let mut moved = system(&looped);
