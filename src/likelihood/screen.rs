@@ -97,21 +97,24 @@ impl Predictor {
             Spotted { site, source, z, knots, laws, remembering, loads, scale }
         };
         let channel = |e| Spot::Channel { velocity: plan.is_velocity(e), angle: plan.is_angle(e) };
-        let forces = self.distinct(path);
+        let groups = self.pushing_alike(path);
+        let forces: Vec<usize> = groups.iter().map(|group| group[0]).collect();
         let moved = forces.iter().map(|&c| self.moved_by(path, c, scales[c]));
         let moved = moved.collect::<Result<Vec<_>, _>>()?;
-        for (at, &c) in forces.iter().enumerate() {
+        for ((group, &c), moved_here) in groups.iter().zip(&forces).zip(&moved) {
             for &e in &distinct {
                 let z = column(&path.seen, entries, e);
-                let own = plan.sources.entries[e].1;
-                let spot = match c < nw {
-                    true => channel(e),
-                    false if own == Origin::Input(c - nw) => Spot::OwnPath { input: true },
-                    false => continue,
+                let (site, spot) = match plan.sources.entries[e].1 {
+                    // a law of an input in a channel that pushes as it does is one on its own path
+                    Origin::Input(i) if group.contains(&(nw + i)) => {
+                        (nw + i, Spot::OwnPath { input: true })
+                    }
+                    _ if c < nw => (c, channel(e)),
+                    _ => continue,
                 };
                 let most = moved.iter().map(|m| m[e].abs()).fold(0.0, f64::max);
-                let direction = Some(moved[at][e]).filter(|d| d.abs() > DIRECT * most);
-                found.push(push(Site::Force(c), Some(e), z, spot, scales[c], direction));
+                let direction = Some(moved_here[e]).filter(|d| d.abs() > DIRECT * most);
+                found.push(push(Site::Force(site), Some(e), z, spot, scales[site], direction));
             }
         }
         for o in (0..ny).filter(|&o| self.spread[o] > 0.0) {

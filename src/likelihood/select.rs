@@ -171,8 +171,13 @@ impl Predictor {
     /// Forces of which none pushes as an earlier one does, and none does nothing or enters what is a
     /// definition.
     pub(crate) fn distinct(&self, path: &Path) -> Vec<usize> {
+        self.pushing_alike(path).into_iter().map(|group| group[0]).collect()
+    }
+
+    /// Forces that do something, those together that push in the same direction.
+    pub(crate) fn pushing_alike(&self, path: &Path) -> Vec<Vec<usize>> {
         let (n, nf) = (path.n, path.forces);
-        let mut kept: Vec<usize> = vec![];
+        let mut groups: Vec<Vec<usize>> = vec![];
         let plan = &self.model.plan;
         for c in (0..nf).filter(|&c| c >= plan.sizes.w || plan.may_push(c)) {
             let dot = |a: usize, b: usize| {
@@ -181,15 +186,17 @@ impl Predictor {
                 })
             };
             let own = dot(c, c);
-            let alike = |&other: &usize| {
+            let alike = |other: usize| {
                 let both = dot(c, other);
                 both * both > (1.0 - 1e-9) * own * dot(other, other)
             };
-            if own > 0.0 && !kept.iter().any(alike) {
-                kept.push(c);
+            match groups.iter_mut().find(|group| alike(group[0])) {
+                _ if !(own > 0.0) => {}
+                Some(group) => group.push(c),
+                None => groups.push(vec![c]),
             }
         }
-        kept
+        groups
     }
 
     /// The same noise with the poles that its slow parts call for.
