@@ -125,6 +125,7 @@ impl Predictor {
         // one law among all
         let choice = (self.places_count() as f64).ln() + (laws.len() as f64).ln();
         let parts = vec![Part::Law { site, source, law: Box::new(law) }];
-        Some(Found { parts, choice, ..self.as_cause((site, source)) })
+        // the place may have another law, or more of them, than is given
+        Some(Found { parts, choice, chosen_again: false, ..self.as_cause((site, source)) })
     }
 }

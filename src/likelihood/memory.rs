@@ -19,12 +19,13 @@ use super::laws::Law;
 use super::noise::Noise;
 use super::path::Path;
 use super::predictor::Predictor;
+use super::racing::RACED;
 use super::replay::Pass;
 use super::screen::Spotted;
 use crate::effect::{EffectCard, Mechanism, Role, View};
 use crate::register;
 
-/// Laws of one survey that are fitted, the most gaining first.
+/// Laws of one survey that go into a race, the most gaining first.
 const FITTED: usize = 2;
 /// Points of a grid from nothing on, and by how much each is less than the one before; the first is as much less
 /// than the most that is looked for.
@@ -104,11 +105,13 @@ impl Predictor {
         Some(Pass::of(&run.path, noise, false).z)
     }
 
-    /// The laws that remember which gain the most, fitted, each with its place among `spots`.
+    /// The laws that remember which gain the most, each with its place among `spots`; fitted to the end where they
+    /// are near `best`, the criterion of the best of all others.
     pub(super) fn remembering(
         &self,
         (path, noise): (&Path, &Noise),
         spots: &[Spotted],
+        best: f64,
     ) -> Vec<(Hypothesis, usize)> {
         let theta = &self.model.theta;
         let z = Pass::of(path, noise, false).z;
@@ -127,18 +130,23 @@ impl Predictor {
             points.into_par_iter().filter_map(gained).collect();
         judged.sort_by(|a, b| b.0.total_cmp(&a.0));
         let price = 0.5 * self.observed().ln() + (spots.len() as f64).ln();
-        let mut fitted: Vec<(usize, Vec<Part>)> = vec![];
+        let mut raced: Vec<(usize, Vec<Part>)> = vec![];
         for (gain, at, parts) in judged {
             let own = names(&parts);
-            let is_new = !fitted.iter().any(|(_, other)| names(other) == own);
-            if gain > price && is_new && fitted.len() < FITTED {
-                fitted.push((at, parts));
+            let is_new = !raced.iter().any(|(_, other)| names(other) == own);
+            if gain > price && is_new && raced.len() < FITTED {
+                raced.push((at, parts));
             }
         }
         let fit = |(at, parts): (usize, Vec<Part>)| {
-            Some((self.refit(self.fit(parts, theta, noise)?)?, at))
+            let raced = self.raced(parts, theta, noise)?;
+            let fitted = match raced.criterion(self.observed()) > best - RACED {
+                true => self.refit(self.fit(raced.parts, &raced.theta, noise)?)?,
+                false => raced,
+            };
+            Some((fitted, at))
         };
-        fitted.into_par_iter().filter_map(fit).collect()
+        raced.into_par_iter().filter_map(fit).collect()
     }
 }
 

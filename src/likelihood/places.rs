@@ -124,7 +124,9 @@ impl Predictor {
             let quick = quick.get_or_insert_with(|| self.quick(&null.noise, value));
             fitted.extend(self.fitted(quick, &path, &spots, place));
         }
-        fitted.extend(self.remembering((&path, &null.noise), &spots));
+        let merits = fitted.iter().map(|(h, _)| h.criterion(self.observed()));
+        let best = merits.fold(nothing.criterion(self.observed()), f64::max);
+        fitted.extend(self.remembering((&path, &null.noise), &spots, best));
         let sets = self.weighed(&nothing, fitted, &spots);
         Ok(Survey { null, places, sets })
     }

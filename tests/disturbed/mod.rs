@@ -12,10 +12,10 @@ mod joint;
 mod more;
 mod rectified;
 mod revolving;
+mod sluggish;
 
 use lacuna::data::{Record, Signal};
 use lacuna::diagnose::{Diagnosis, Finding};
-use lacuna::likelihood::{Given, Predictor};
 use lacuna::system::System;
 
 use self::more::{FAN, VESSELS};
@@ -233,32 +233,6 @@ fn an_effect_is_named_beside_noise_inside_the_plant() {
         let (named, said) = case.judged(&finding);
         assert!(named, "{}: {said}", case.name);
     }
-}
-
-/// Two laws at two places, and the force that nothing explains, with their sizes.
-#[test]
-fn causes_are_explained_together_and_the_rest_is_noise() {
-    let laws = "into = \"on_mass\"\nof = \"rate\"\neffect.coulomb_friction = { level = -0.4, width = 0.02 }\n\
-                [[effects]]\ninto = \"on_mass\"\nof = \"place\"\neffect.cubic = { coefficient = -4.0 }";
-    let machine = with(OSCILLATOR, laws);
-    let noise = Sizes { white: vec![0.3], measurement: vec![0.01], ..Sizes::default() };
-    let record = simulate(&machine, &excitation(3000, 0.05, 1.5, 8), &noise, 9);
-    let predictor = Predictor::new(&system(OSCILLATOR), &[record]).unwrap();
-    let held = std::iter::once(2200..3000).collect::<Vec<_>>();
-    let found = predictor.explain((&Given::default(), 5), &held, None, &|| false).unwrap();
-    let said = format!("{found:?}");
-    assert_eq!((found.causes.len(), found.withdrawn.len()), (2, 0), "{said}");
-    for (of, name, value) in [("rate", "coulomb_friction", -0.4), ("place", "cubic", -4.0)] {
-        let cause = found.causes.iter().find(|cause| cause.of.as_deref() == Some(of)).unwrap();
-        let at = cause.laws.iter().position(|law| law.effect.typetag_name() == name).unwrap();
-        let (is, error) =
-            (cause.laws[at].effect.card().values()[0], cause.std_error(at, 0).unwrap());
-        assert!((is - value).abs() < 4.0 * error && error < 0.2 * value.abs(), "{is} +- {error}");
-        assert!(cause.place_probability > 0.99 && cause.log_odds > 10.0, "{said}");
-    }
-    assert!(found.nothing < 1e-6);
-    let force = found.noise.white[0].sqrt();
-    assert!((force - 0.3).abs() < 0.05, "a random force of {force} N");
 }
 
 /// Rates over seeds, as a table: `SEEDS=20 cargo test --release --test diagnosis disturbed::rates --

@@ -2,6 +2,8 @@
 
 use super::plants::{GANTRY, OSCILLATOR, Sizes, excitation, simulate, system, with};
 use crate::follow::Wanted;
+use crate::given::Given;
+use crate::hypothesis::Hypothesis;
 use crate::noise::Slow;
 use crate::predictor::{Predictor, column};
 use crate::replay::Pass;
@@ -90,4 +92,46 @@ fn scores_of_a_sensor_in_a_loop_are_slopes_of_the_likelihood() {
 
 fn with_bias(value: f64) -> String {
     format!("{OSCILLATOR}[[effects]]\ninto = \"position\"\neffect.bias = {{ value = {value:?} }}\n")
+}
+
+/// A lag on the path of an input has no column of its own; its slope is a difference of the filter.
+#[test]
+fn scores_of_a_law_that_remembers_are_slopes_of_the_likelihood() {
+    let lag = |time_constant: f64| {
+        let law = format!(
+            "into = \"force\"\nof = \"force\"\neffect.lag = {{ time_constant = {time_constant:?} }}"
+        );
+        with(OSCILLATOR, &law)
+    };
+    let sizes = Sizes { white: vec![0.05], measurement: vec![0.02], ..Sizes::default() };
+    // the simulator remembers states alone
+    let slow = OSCILLATOR.replace("(force -", "(acts -").replace(
+        "states = [",
+        "states = [{ name = \"acts\", derivative = \"(force - acts)/0.15\" },",
+    );
+    let record = simulate(&system(&slow), &excitation(600, 0.05, 1.0, 2), &sizes, 3);
+    let plant = system(OSCILLATOR);
+    let predictor = Predictor::new(&plant, std::slice::from_ref(&record)).unwrap();
+    let mut noise = predictor.white(vec![4e-4]);
+    noise.white[0] = 0.0025;
+    let at = |time_constant: f64| {
+        let given = Given::new(lag(time_constant).effects, &[], &[]);
+        let mut asked = predictor.clone();
+        let begun = asked.first_hypothesis(&given, Some(&noise)).unwrap();
+        let of = Hypothesis { noise: noise.clone(), ..begun.now };
+        predictor.evaluated(of).unwrap()
+    };
+    let (of, run) = at(0.12);
+    let columns = predictor.slopes(&of, &run);
+    let pass = Pass::of(&run.path, &noise, false);
+    let sums = gram(&run.path, &pass, &noise, &columns);
+    let likely = |time_constant: f64| at(time_constant).0.log_likelihood;
+    let difference = (likely(0.1201) - likely(0.1199)) / 2e-4;
+    let size = sums.square[(0, 0)].sqrt();
+    assert!((-sums.slope[0] - difference).abs() < 0.02 * size, "{} {difference}", -sums.slope[0]);
+    assert!(size > 10.0);
+    // and the fit that goes by them ends at the lag
+    let fitted = predictor.refit(predictor.fit(of.parts, &of.theta, &noise).unwrap()).unwrap();
+    let found = predictor.placed(&fitted.parts)[0].effect.card().values()[0];
+    assert!((found - 0.15).abs() < 0.02, "{found}");
 }

@@ -1,0 +1,57 @@
+//! Instruments that remember, in a plant that is disturbed.
+
+use lacuna::data::Record;
+use lacuna::diagnose::{Diagnosis, Verdict};
+
+use super::plants::{Sizes, excitation, simulate_by, system};
+
+/// A body that turns, with its rate and its angle measured.
+const BODY: &str = r#"
+sampling_time = 0.01
+integrator = { method = "rk4", substeps = 2 }
+[model.equations]
+inputs = [{ name = "torque", unit = "N m" }]
+states = [{ name = "turn", unit = "rad", derivative = "rate" }, { name = "rate", unit = "rad/s", derivative = "(torque - d*rate)/j" }]
+outputs = [{ name = "gyro", unit = "rad/s", value = "rate" }, { name = "attitude", unit = "rad", value = "turn" }]
+parameters = [{ name = "j", value = 0.02, min = 0.0 }, { name = "d", value = 0.03, min = 0.0 }]
+channels = [{ name = "on_body", unit = "N m", into = [{ state = "rate", gain = "1/j" }] }]
+coordinates = [{ name = "speed", unit = "rad/s", value = "rate", quantity = "velocity" }]
+"#;
+
+/// Gusts that the loop feeds back drown a simulation, not a predictor.
+#[test]
+fn a_slow_actuator_is_found_beside_gusts_in_a_loop() {
+    // what the simulator remembers is a state of the machine, or the course of what was commanded
+    let slow = BODY.replace("(torque - d*rate)", "(acts - d*rate)").replace(
+        "states = [",
+        "states = [{ name = \"acts\", unit = \"N m\", derivative = \"(torque - acts)/0.06\" }, ",
+    );
+    for (machine, late, effect, value) in [(&slow[..], 0, "lag", 0.06), (BODY, 5, "delay", 0.05)] {
+        let wanted = excitation(2500, 0.01, 0.4, 21);
+        let noise = Sizes {
+            slow: vec![0.004],
+            fades: 0.1,
+            measurement: vec![0.02, 0.002],
+            ..Sizes::default()
+        };
+        let mut commanded: Vec<f64> = vec![];
+        let drive = |k: usize, seen: &[f64]| {
+            commanded.push(0.5 * (wanted[k] - seen[1]) - 0.15 * seen[0]);
+            commanded[k.saturating_sub(late)]
+        };
+        let acted = simulate_by(&system(machine), wanted.len(), &noise, 22, drive);
+        let mut record = Record::new(0.01).input("torque", commanded).unwrap();
+        for output in &acted.outputs {
+            record = record.output(&output.name, output.values.clone()).unwrap();
+        }
+        let finding = Diagnosis::of(&system(BODY)).run(&[record], None, &()).unwrap();
+        let named: Vec<_> =
+            finding.causes.iter().map(|cause| (&cause.effect[..], &cause.into[..])).collect();
+        assert_eq!(named, [(effect, "torque")], "{:?}", finding.causes);
+        assert_eq!(finding.verdict, Verdict::CausesFound);
+        let found = &finding.causes[0].parameters[0];
+        let error = found.std_error.unwrap();
+        let off = (found.value - value).abs();
+        assert!(off < 4.0 * error && error < 0.1 * value, "{} +- {error}", found.value);
+    }
+}
