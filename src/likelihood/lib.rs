@@ -50,6 +50,7 @@ mod places;
 mod predictor;
 mod racing;
 mod ranked;
+mod remembering;
 mod replay;
 mod rows;
 mod scope;

@@ -1,32 +1,23 @@
 //! Laws that remember, on the path of an instrument: a lag, a delay, play.
 //!
 //! What such a law adds depends on the past of what it reads, so that no column of a sample tells it. The slopes of
-//! the standardised innovations z along its parameters are differences of the filter itself, and a point p of its
-//! grid is judged by its secant, d = z(p) - z:
+//! the standardised innovations z along its parameters are differences of the filter itself,
 //!
 //! ```text
-//! dz / dp = (z(p + h) - z(p - h)) / 2 h,      gain of log L: 1/2 (d'z)^2 / d'd  where d'z < 0
+//! dz / dp = (z(p + h) - z(p - h)) / 2 h
 //! ```
 //!
-//! Sources: Ljung, "System Identification", 2nd ed., 1999, section 10.2 (Gauss-Newton, a gradient by differences);
-//! Miller, "Subset Selection in Regression", 2nd ed., 2002, ch. 3.
-
-use rayon::prelude::*;
+//! Source: Ljung, "System Identification", 2nd ed., 1999, section 10.2 (Gauss-Newton, a gradient by differences).
 
 use super::follow::Wanted;
-use super::hypothesis::{Hypothesis, Part, names};
+use super::hypothesis::{Hypothesis, Part};
 use super::laws::Law;
 use super::noise::Noise;
-use super::path::Path;
 use super::predictor::Predictor;
-use super::racing::RACED;
 use super::replay::Pass;
-use super::screen::Spotted;
 use crate::effect::{EffectCard, Mechanism, Role, View};
 use crate::register;
 
-/// Laws of one survey that go into a race, the most gaining first.
-const FITTED: usize = 2;
 /// Points of a grid from nothing on, and by how much each is less than the one before; the first is as much less
 /// than the most that is looked for.
 const POINTS: usize = 3;
@@ -98,64 +89,15 @@ impl Predictor {
     }
 
     /// The standardised innovations of a hypothesis under a noise.
-    fn standardised(&self, parts: &[Part], theta: &[f64], noise: &Noise) -> Option<Vec<f64>> {
+    pub(super) fn standardised(
+        &self,
+        parts: &[Part],
+        theta: &[f64],
+        noise: &Noise,
+    ) -> Option<Vec<f64>> {
         let model = self.extended(parts, theta).ok()?;
         let run = self.run(&model, noise, Wanted { gate: Some(self.gate()), ..Wanted::default() });
         let run = run.ok().filter(|run| run.log_likelihood.is_finite())?;
         Some(Pass::of(&run.path, noise, false).z)
     }
-
-    /// The laws that remember which gain the most, each with its place among `spots`; fitted to the end where they
-    /// are near `best`, the criterion of the best of all others.
-    pub(super) fn remembering(
-        &self,
-        (path, noise): (&Path, &Noise),
-        spots: &[Spotted],
-        best: f64,
-    ) -> Vec<(Hypothesis, usize)> {
-        let theta = &self.model.theta;
-        let z = Pass::of(path, noise, false).z;
-        let points = spots.iter().enumerate().flat_map(|(at, spot)| {
-            spot.remembering.iter().map(move |law| {
-                let law = Box::new(law.clone());
-                (at, vec![Part::Law { site: spot.site, source: spot.source, law }])
-            })
-        });
-        let points: Vec<(usize, Vec<Part>)> = points.collect();
-        let gained = |(at, parts): (usize, Vec<Part>)| {
-            let there = self.standardised(&parts, theta, noise)?;
-            Some((secant_gain(&z, &there), at, parts))
-        };
-        let mut judged: Vec<(f64, usize, Vec<Part>)> =
-            points.into_par_iter().filter_map(gained).collect();
-        judged.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let price = 0.5 * self.observed().ln() + (spots.len() as f64).ln();
-        let mut raced: Vec<(usize, Vec<Part>)> = vec![];
-        for (gain, at, parts) in judged {
-            let own = names(&parts);
-            let is_new = !raced.iter().any(|(_, other)| names(other) == own);
-            if gain > price && is_new && raced.len() < FITTED {
-                raced.push((at, parts));
-            }
-        }
-        let fit = |(at, parts): (usize, Vec<Part>)| {
-            let raced = self.raced(parts, theta, noise)?;
-            let fitted = match raced.criterion(self.observed()) > best - RACED {
-                true => self.refit(self.fit(raced.parts, &raced.theta, noise)?)?,
-                false => raced,
-            };
-            Some((fitted, at))
-        };
-        raced.into_par_iter().filter_map(fit).collect()
-    }
-}
-
-/// What a multiple of the way from innovations `z` to those at a point of a grid gains at most.
-fn secant_gain(z: &[f64], there: &[f64]) -> f64 {
-    let both = z.iter().zip(there).filter(|(z, there)| z.is_finite() && there.is_finite());
-    let (along, size) = both.fold((0.0, 0.0), |(along, size), (z, there)| {
-        let d = there - z;
-        (along + d * z, size + d * d)
-    });
-    if along < 0.0 { 0.5 * along * along / size } else { 0.0 }
 }
