@@ -219,7 +219,12 @@ impl Predictor {
     ) -> Result<Explanation, LikelihoodError> {
         let now = self.fit_all(&mut found, &now.theta, &now.noise).unwrap_or(now);
         dealt(&mut found, &now);
-        let (now, run) = self.evaluated(now)?;
+        let (mut now, mut run) = self.evaluated(now)?;
+        let model = self.extended(&now.parts, &now.theta)?;
+        let noise = (&now.noise, now.log_likelihood);
+        if let Some(noise) = self.needed_noise(&model, noise, &run.path)? {
+            (now, run) = self.evaluated(Hypothesis { noise, ..now })?;
+        }
         let covariances = self.covariances(&now, &run);
         let pass = Pass::of(&run.path, &now.noise, true);
         let smoothed = pass.smoothed(&run.path, &now.noise);

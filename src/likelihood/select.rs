@@ -52,16 +52,40 @@ impl Predictor {
             // the path of the selected noise leaves the numbers: stay with one that tracks
             chosen = self.renewed(model, &self.tracking_noise(tracking), RENEWED)?;
         }
-        let fewer = self.pruned(&chosen.run.path, chosen.noise.clone());
-        if fewer != chosen.noise {
-            let other = self.renewed(model, &fewer, 1)?;
-            let penalty = 0.5 * self.observed().ln();
-            let lost = chosen.log_likelihood - other.log_likelihood;
-            if lost < penalty * (chosen.noise.count() as f64 - other.noise.count() as f64) {
-                chosen = other;
-            }
+        let fewer = self.pruned(&chosen.run.path, chosen.noise.clone(), 1);
+        if let Some(other) = self.as_good(model, &chosen.noise, chosen.log_likelihood, &fewer)? {
+            chosen = other;
         }
         Ok(chosen)
+    }
+
+    /// The noise of fewer components beside causes that were found, where they can do without the others: it was
+    /// chosen before them, and had to stand for them.
+    pub(super) fn needed_noise(
+        &self,
+        model: &Model,
+        (noise, value): (&Noise, f64),
+        path: &Path,
+    ) -> Result<Option<Noise>, LikelihoodError> {
+        let fewer = self.pruned(path, noise.clone(), 0);
+        Ok(self.as_good(model, noise, value, &fewer)?.map(|other| other.noise))
+    }
+
+    /// A noise of fewer components, on a path of its own, where it loses less than the others take.
+    fn as_good(
+        &self,
+        model: &Model,
+        noise: &Noise,
+        value: f64,
+        fewer: &Noise,
+    ) -> Result<Option<Chosen>, LikelihoodError> {
+        if fewer == noise {
+            return Ok(None);
+        }
+        let other = self.renewed(model, fewer, 1)?;
+        let saved = noise.count() as f64 - other.noise.count() as f64;
+        let is_as_good = value - other.log_likelihood < 0.5 * self.observed().ln() * saved;
+        Ok(is_as_good.then_some(other))
     }
 
     /// The same components fitted anew under another model.
@@ -231,13 +255,13 @@ impl Predictor {
         noise
     }
 
-    /// The noise without what it can do without.
-    fn pruned(&self, path: &Path, mut noise: Noise) -> Noise {
+    /// The noise without what it can do without, of so many parts at least beside that of the sensors.
+    fn pruned(&self, path: &Path, mut noise: Noise, least: usize) -> Noise {
         let penalty = 0.5 * self.observed().ln();
         let mut value = Pass::of(path, &noise, false).log_likelihood;
         let process = |c: &Component| !matches!(c, Component::Measurement(_));
         for component in noise.components().into_iter().filter(process) {
-            if noise.components().iter().filter(|c| process(c)).count() < 2 {
+            if noise.components().iter().filter(|c| process(c)).count() <= least {
                 break;
             }
             let mut less = noise.clone();

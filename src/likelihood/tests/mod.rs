@@ -8,6 +8,7 @@ mod intensities;
 mod jacobian;
 mod measured;
 mod missing;
+mod needed_noise;
 mod places;
 mod plants;
 mod smoother;
