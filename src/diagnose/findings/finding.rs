@@ -148,6 +148,8 @@ pub struct Left {
     /// Where a random walk beside noise is its most probable kind, as of a sensor that wanders: the standard
     /// deviation of the walk's steps from sample to sample, in the output's unit.
     pub wanders_by: Option<f64>,
+    /// Where its mean makes up most of its mean square: the mean, in the output's unit.
+    pub mean: Option<f64>,
 }
 
 /// How much was recorded.

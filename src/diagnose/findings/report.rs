@@ -19,7 +19,7 @@ use crate::fit::problem::{Grain, Model, Part};
 use crate::fit::refit::{Refit, Stop};
 use crate::likelihood::OutputNoise;
 use crate::prepare::input_dependence::DEPENDS;
-use crate::statistics::{rms, whiteness};
+use crate::statistics::{mean, rms, whiteness};
 use crate::validate::false_discovery::false_discovery;
 use crate::validate::gain::gain;
 use crate::validate::noise_floor::NoiseFloor;
@@ -166,7 +166,8 @@ impl Context<'_, '_> {
             let ratio_to_noise = noise.map(|std| rms(&off) / std);
             let white = score < WHITE;
             let wanders_by = if white { None } else { OutputNoise::of(&off).steps() };
-            (signal.name.clone(), Left { ratio_to_noise, white, score, wanders_by })
+            let mean = Some(mean(&off)).filter(|mean| 2.0 * mean * mean > rms(&off).powi(2));
+            (signal.name.clone(), Left { ratio_to_noise, white, score, wanders_by, mean })
         });
         left.collect()
     }

@@ -139,9 +139,20 @@ pub(super) fn left(name: &str, left: &Left, unit: &str) -> String {
             spaced(unit)
         ),
     };
+    // a level of white noise is an offset, and named as one
+    let mean = match left.mean.filter(|_| !left.white) {
+        Some(mean) => format!(
+            ". Most of it is its mean, {}{}: a constant offset may be in it, which such noise hides",
+            rough(mean),
+            spaced(unit)
+        ),
+        None => String::new(),
+    };
     match left.ratio_to_noise {
-        Some(ratio) => format!("What is left of {name} is {}, and {colour}.", over_noise(ratio)),
-        None => format!("What is left of {name} is {colour}; the noise is not known."),
+        Some(ratio) => {
+            format!("What is left of {name} is {}, and {colour}{mean}.", over_noise(ratio))
+        }
+        None => format!("What is left of {name} is {colour}; the noise is not known{mean}."),
     }
 }
 
@@ -242,29 +253,5 @@ pub fn nothing(finding: &Finding) -> String {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::diagnose::{Site, Wording};
-
-    #[test]
-    fn what_is_as_likely_as_a_parameter_and_less_usual_says_why() {
-        let wording = Wording { site: Site::Parameter, ..Wording::default() };
-        let mut moved = Cause { into: "m".into(), wording, ..Cause::default() };
-        let gain = |probability| Alternative {
-            effect: "gain".into(),
-            into: "y".into(),
-            of: Some("y".into()),
-            title: "A wrong scale".into(),
-            site: Site::Output,
-            error_removed: 0.5,
-            probability: Some(probability),
-            unweighed: None,
-        };
-        assert!(why_less_sure(&moved).is_none());
-        moved.indistinguishable = vec![gain(0.002)];
-        let why = why_less_sure(&moved).unwrap();
-        assert!(why.ends_with("a value that is a little wrong is more usual than a law"), "{why}");
-        moved.indistinguishable.push(gain(0.3));
-        assert!(why_less_sure(&moved).is_none());
-    }
-}
+#[path = "rest_tests.rs"]
+mod tests;

@@ -1,10 +1,7 @@
 //! Sentences of findings made by hand.
 
 use super::*;
-use crate::diagnose::{
-    Alternative, ColumnFault, FoundShape, LawPart, Left, Note, Onset, RecordFacts, Site, Unweighed,
-    Value, Wording,
-};
+use crate::diagnose::{ColumnFault, FoundShape, LawPart, Note, Onset, Site, Value, Wording};
 use crate::effect::Size;
 
 fn value(name: &str, value: f64, error: f64, unit: &str) -> Value {
@@ -216,61 +213,6 @@ fn faults_of_columns() {
     );
     assert!(column(ColumnFault::SwappedSign, None, 0).starts_with("The sign of y is swapped; "));
     assert!(column(ColumnFault::TimeShift(-0.02), None, 0).contains("0.02000 s early"));
-}
-
-#[test]
-fn what_is_left_and_what_was_supposed() {
-    let of = |ratio_to_noise, white, wanders_by| {
-        rest::left("y", &Left { ratio_to_noise, white, score: 826.4, wanders_by }, "V")
-    };
-    assert_eq!(
-        of(Some(1.03), true, None),
-        "What is left of y is 1.0 times the noise, and white: a sample says nothing of the next."
-    );
-    assert!(of(Some(32.7), false, None).contains("33 times the noise, and coloured (score 826)"));
-    let little = of(Some(0.68), true, None);
-    assert!(little.starts_with("What is left of y is no more than the noise, and white"));
-    assert!(of(None, false, None).contains("the noise is not known"));
-    let wanders = of(Some(1.0), false, Some(0.01));
-    assert!(wanders.contains("as of a sensor that wanders by 0.010 V from sample"), "{wanders}");
-    let disturbed = rest::left_by_disturbance("y", 6.94);
-    let first = "A simulation of y is off by 6.9 times the noise: ";
-    assert!(disturbed.starts_with(first), "{disturbed}");
-    let facts = RecordFacts { records: 1, samples: 400, sampling_time: 0.1, test_samples: None };
-    assert!(record(&facts).starts_with("400 samples of one record, 0.1000 s apart; "));
-}
-
-#[test]
-fn what_is_fixed_is_named_and_may_be_the_cause() {
-    assert_eq!(rest::supposed_right(&[]), None);
-    let text = rest::supposed_right(&["m".into(), "l".into()]).unwrap();
-    assert!(text.contains("held: m, l.") && text.contains("wrong or drifts"), "{text}");
-    let drift = Alternative {
-        effect: "drift".into(),
-        into: "m".into(),
-        of: Some("time".into()),
-        error_removed: 0.5,
-        probability: Some(0.25),
-        unweighed: None,
-        title: "A drift".into(),
-        site: Site::Drift,
-    };
-    let held = rest::alternative(&["m".into()], &drift);
-    assert_eq!(held, "a drift of m (25 %), which is held as right");
-    assert_eq!(rest::alternative(&[], &drift), "a drift of m (25 %)");
-    let twin = Alternative { probability: None, unweighed: Some(Unweighed::SameModel), ..drift };
-    let said = "a drift of m (the same model under another name)";
-    assert_eq!(rest::alternative(&[], &twin), said);
-}
-
-#[test]
-fn data_at_fault_do_not_hide_that_the_model_is_wrong_too() {
-    let left = |white| Left { ratio_to_noise: Some(5.0), white, score: 1756.0, wanders_by: None };
-    let (open, white) = ([left(true), left(false)], [left(true)]);
-    let text = rest::not_only_data(Verdict::DataFault, open.iter()).unwrap();
-    assert!(text.contains("that is not all"), "{text}");
-    assert_eq!(rest::not_only_data(Verdict::DataFault, white.iter()), None);
-    assert_eq!(rest::not_only_data(Verdict::CausesFound, open.iter()), None);
 }
 
 #[test]
