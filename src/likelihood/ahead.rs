@@ -15,12 +15,12 @@ use nalgebra::DMatrix;
 
 use super::error::LikelihoodError;
 use super::follow::Wanted;
+use super::memory::is_of_a_path;
 use super::model::NoiseModel;
 use super::noise::Noise;
 use super::predictor::Predictor;
 use super::replay::Pass;
 use crate::data::Record;
-use crate::effect::Mechanism;
 use crate::evaluate::{EvaluateError, Metrics, Simulation};
 use crate::system::{System, Transition};
 
@@ -116,9 +116,7 @@ impl Predictor {
     /// another path whose past is no state.
     pub fn ahead(&self, noise: &Noise, horizon: usize) -> Result<Vec<Vec<f64>>, LikelihoodError> {
         let plan = &self.model.plan;
-        let remembers =
-            |m: Mechanism| matches!(m, Mechanism::Lag | Mechanism::Delay | Mechanism::Play);
-        if let Some(slot) = plan.slots.iter().find(|slot| remembers(slot.card.mechanism)) {
+        if let Some(slot) = plan.slots.iter().find(|slot| is_of_a_path(slot.card.mechanism)) {
             let effect = slot.effect.typetag_name().to_string();
             return Err(LikelihoodError::Remembers { effect });
         }

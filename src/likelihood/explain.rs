@@ -220,9 +220,7 @@ impl Predictor {
         let now = self.fit_all(&mut found, &now.theta, &now.noise).unwrap_or(now);
         dealt(&mut found, &now);
         let (mut now, mut run) = self.evaluated(now)?;
-        let model = self.extended(&now.parts, &now.theta)?;
-        let noise = (&now.noise, now.log_likelihood);
-        if let Some(noise) = self.needed_noise(&model, noise, &run.path)? {
+        if let Some(noise) = self.needed_noise(&now, &run.path)? {
             (now, run) = self.evaluated(Hypothesis { noise, ..now })?;
         }
         let covariances = self.covariances(&now, &run);

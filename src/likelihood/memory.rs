@@ -25,9 +25,14 @@ const LESS: f64 = 4.0;
 /// Difference along a parameter, as a share of its value.
 const NUDGE: f64 = 1e-4;
 
+/// Whether the system remembers the past of a path for what sits in it.
+pub(super) fn is_of_a_path(mechanism: Mechanism) -> bool {
+    matches!(mechanism, Mechanism::Lag | Mechanism::Delay | Mechanism::Play)
+}
+
 /// Whether what a law adds depends on the past of what it reads.
 pub(super) fn remembers(card: &EffectCard) -> bool {
-    matches!(card.mechanism, Mechanism::Lag | Mechanism::Delay | Mechanism::Play) || card.states > 0
+    is_of_a_path(card.mechanism) || card.states > 0
 }
 
 /// The laws that an instrument may have on its own path, each at every point of its grid.
@@ -36,7 +41,7 @@ pub(super) fn of_an_instrument(is_input: bool, view: &View) -> Vec<Law> {
     for (own, effect) in register::effects() {
         let card = effect.card();
         let is_there = if is_input { card.places.input } else { card.places.output };
-        if !(remembers(&card) && is_there && card.states == 0) {
+        if !(is_of_a_path(card.mechanism) && is_there && card.states == 0) {
             continue;
         }
         let (mut card, search) = (card, effect.search(view));

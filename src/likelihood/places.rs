@@ -98,7 +98,8 @@ impl Predictor {
                 all.into_iter().filter(own).collect()
             }
         };
-        let base = Pass::of(&path, &null.noise, false).log_likelihood;
+        let pass = Pass::of(&path, &null.noise, false);
+        let base = pass.log_likelihood;
         let mut noises = vec![null.noise.clone()];
         noises.extend(self.whitened(&path, &null.noise));
         let mut led: Vec<Led> =
@@ -126,7 +127,7 @@ impl Predictor {
         }
         let merits = fitted.iter().map(|(h, _)| h.criterion(self.observed()));
         let best = merits.fold(nothing.criterion(self.observed()), f64::max);
-        fitted.extend(self.remembering((&path, &null.noise), &spots, best));
+        fitted.extend(self.remembering((&pass.z, &null.noise), &spots, best));
         let sets = self.weighed(&nothing, fitted, &spots);
         Ok(Survey { null, places, sets })
     }

@@ -12,26 +12,23 @@ use rayon::prelude::*;
 
 use super::hypothesis::{Hypothesis, Part, names};
 use super::noise::Noise;
-use super::path::Path;
 use super::predictor::Predictor;
 use super::racing::RACED;
-use super::replay::Pass;
 use super::screen::Spotted;
 
 /// Laws of one survey that go into a race, the most gaining first.
 const RACING: usize = 2;
 
 impl Predictor {
-    /// The laws that remember which gain the most, each with its place among `spots`; fitted to the end where they
+    /// The laws that remember which gain the most on standardised innovations `z`, each with its place among `spots`; fitted to the end where they
     /// are near `best`, the criterion of the best of all others.
     pub(super) fn remembering(
         &self,
-        (path, noise): (&Path, &Noise),
+        (z, noise): (&[f64], &Noise),
         spots: &[Spotted],
         best: f64,
     ) -> Vec<(Hypothesis, usize)> {
         let theta = &self.model.theta;
-        let z = Pass::of(path, noise, false).z;
         let points = spots.iter().enumerate().flat_map(|(at, spot)| {
             spot.remembering.iter().map(move |law| {
                 let law = Box::new(law.clone());
@@ -41,7 +38,7 @@ impl Predictor {
         let points: Vec<(usize, Vec<Part>)> = points.collect();
         let gained = |(at, parts): (usize, Vec<Part>)| {
             let there = self.standardised(&parts, theta, noise)?;
-            Some((secant_gain(&z, &there), at, parts))
+            Some((secant_gain(z, &there), at, parts))
         };
         let mut judged: Vec<(f64, usize, Vec<Part>)> =
             points.into_par_iter().filter_map(gained).collect();

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use super::error::LikelihoodError;
 use super::follow::{Followed, Wanted};
+use super::hypothesis::Hypothesis;
 use super::intensities::{concentrated, most_likely, nearly_most_likely};
 use super::noise::{Component, Noise, Slow};
 use super::parametrised::Model;
@@ -53,7 +54,10 @@ impl Predictor {
             chosen = self.renewed(model, &self.tracking_noise(tracking), RENEWED)?;
         }
         let fewer = self.pruned(&chosen.run.path, chosen.noise.clone(), 1);
-        if let Some(other) = self.as_good(model, &chosen.noise, chosen.log_likelihood, &fewer)? {
+        if fewer != chosen.noise
+            && let Some(other) =
+                self.as_good(model, &chosen.noise, chosen.log_likelihood, &fewer)?
+        {
             chosen = other;
         }
         Ok(chosen)
@@ -63,12 +67,16 @@ impl Predictor {
     /// chosen before them, and had to stand for them.
     pub(super) fn needed_noise(
         &self,
-        model: &Model,
-        (noise, value): (&Noise, f64),
+        of: &Hypothesis,
         path: &Path,
     ) -> Result<Option<Noise>, LikelihoodError> {
-        let fewer = self.pruned(path, noise.clone(), 0);
-        Ok(self.as_good(model, noise, value, &fewer)?.map(|other| other.noise))
+        let fewer = self.pruned(path, of.noise.clone(), 0);
+        if fewer == of.noise {
+            return Ok(None);
+        }
+        let model = self.extended(&of.parts, &of.theta)?;
+        let other = self.as_good(&model, &of.noise, of.log_likelihood, &fewer)?;
+        Ok(other.map(|other| other.noise))
     }
 
     /// A noise of fewer components, on a path of its own, where it loses less than the others take.
@@ -79,9 +87,6 @@ impl Predictor {
         value: f64,
         fewer: &Noise,
     ) -> Result<Option<Chosen>, LikelihoodError> {
-        if fewer == noise {
-            return Ok(None);
-        }
         let other = self.renewed(model, fewer, 1)?;
         let saved = noise.count() as f64 - other.noise.count() as f64;
         let is_as_good = value - other.log_likelihood < 0.5 * self.observed().ln() * saved;

@@ -163,10 +163,11 @@ impl Context<'_, '_> {
             let off = self.problem.counted(o, &off[o], Part::All);
             let score = whiteness(&off);
             let noise = floors.get(&signal.name).map(|floor| floor.std).filter(|std| *std > 0.0);
-            let ratio_to_noise = noise.map(|std| rms(&off) / std);
+            let size = rms(&off);
+            let ratio_to_noise = noise.map(|std| size / std);
             let white = score < WHITE;
             let wanders_by = if white { None } else { OutputNoise::of(&off).steps() };
-            let mean = Some(mean(&off)).filter(|mean| 2.0 * mean * mean > rms(&off).powi(2));
+            let mean = Some(mean(&off)).filter(|mean| 2.0 * mean * mean > size * size);
             (signal.name.clone(), Left { ratio_to_noise, white, score, wanders_by, mean })
         });
         left.collect()
