@@ -26,12 +26,13 @@ impl Predictor {
     }
 }
 
-/// Largest entry of Phi(N, 0) over all segments, every state in units of its scale.
+/// Largest entry of Phi(N, 0) over all segments, of states that have a scale and in units of it: those of
+/// an effect come after them and begin at rest.
 fn remembered(path: &Path, scales: &[f64]) -> f64 {
     let n = path.n;
     let mut most: f64 = 0.0;
     for segment in &path.segments {
-        for j in 0..n {
+        for j in 0..scales.len() {
             let mut x: Vec<f64> = (0..n).map(|i| if i == j { scales[j] } else { 0.0 }).collect();
             for k in segment.start..segment.end.saturating_sub(1) {
                 let a = path.a(k);
@@ -49,6 +50,12 @@ fn remembered(path: &Path, scales: &[f64]) -> f64 {
 #[allow(clippy::single_range_in_vec_init)] // a record of one segment
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_state_of_an_effect_has_no_start_to_be_forgotten() {
+        let left = remembered(&path([0.9, 0.0, 0.0, 1.0], 50), &[1.0]);
+        assert!((left - 0.9f64.powi(49)).abs() < 1e-12, "{left}");
+    }
 
     fn path(a: [f64; 4], len: usize) -> Path {
         let a = (0..len).flat_map(|_| a).collect();

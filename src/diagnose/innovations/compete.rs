@@ -75,7 +75,7 @@ pub(super) fn extended_by(
 }
 
 /// An answer under both noise models; absent where it cannot be run under one.
-pub(super) struct Rivals {
+pub(crate) struct Rivals {
     /// The error of a free run is coloured noise.
     pub outside: Option<Fitted>,
     /// Noise inside the plant too.

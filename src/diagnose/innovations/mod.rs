@@ -22,7 +22,7 @@ mod missing;
 mod reconsidered;
 mod unforeseen;
 
-pub(crate) use compete::{CLEARLY, criterion, free_run_criterion, innovations_of};
+pub(crate) use compete::{CLEARLY, Rivals, criterion, free_run_criterion, innovations_of};
 pub(crate) use conversion::without;
 pub(crate) use missing::completed;
 pub(crate) use reconsidered::{criterion_of, finish, forgets, search};

@@ -1,143 +1,89 @@
-//! Residual test of model adequacy: does what the simulation leaves depend on the inputs?
+//! Residual test of model adequacy: does what the model leaves depend on what went before?
 //!
 //! `r = y - y_hat` is put to the score test of a dynamic regression ([`Regression`]) against
-//! what a wrong model would leave: a constant and a trend, the sensitivities of the simulated
-//! outputs to the free parameters, and curves of the simulated outputs and of present and past
-//! inputs. Its p-value is uniform if the model is right, whatever the colour of the noise.
+//! what a wrong model would leave: a constant and a trend, the sensitivities of `y_hat` to the free
+//! parameters, and curves of `y_hat` and of past inputs. Its p-value is uniform if the model is
+//! right, whatever the colour of the noise. `y_hat` is simulated, or, where noise inside the plant is
+//! more probable than a simulation with coloured noise, what a predictor foresees of the next sample.
+//! A plant that forgets slowly makes of such noise nearly a random walk, which no short
+//! autoregression whitens; what forgets nothing makes one of it, and the regressions of that have
+//! no such distribution (Dickey and Fuller, Journal of the American Statistical Association 74,
+//! 1979).
+//!
+//! The input of the same sample is tested where it reaches the output without a state in between.
+//! Elsewhere a right model leaves it out, and a controller that reads the output makes it follow
+//! the noise (Ljung, "System Identification", 2nd ed., section 16.6).
+//!
 //! Outputs are combined by the Cauchy combination (Liu and Xie, Journal of the American
 //! Statistical Association 115, 2020), which holds for outputs whose noises belong together.
 
 use crate::data::Record;
-use crate::evaluate::{EvaluateError, Init, Run};
+use crate::evaluate::EvaluateError;
+use crate::innovations::Rivals;
+use crate::likelihood::{Fitted, Noise, NoiseModel, Predictor};
 use crate::prepare::windows::windows;
+use crate::segmentation::horizon;
 use crate::statistics::Regression;
-use crate::system::{Lane, System};
+use crate::system::System;
 use crate::validate::independent::{LAGS, curves};
+use crate::validate::residuals::Residuals;
 
-/// Parameters whose sensitivities are tested, at most.
-const PARAMETERS: usize = 24;
-/// Relative change of a parameter for a finite difference.
-const DIFFERENCE: f64 = 1e-4;
-
-/// Simulated outputs of some records, one after the other, what they leave of the measured ones, and
-/// what a wrong model would leave.
-pub(crate) struct Adequacy {
-    /// Per output: what the simulation leaves; not a number where nothing is known, or where the
-    /// start is not forgotten.
-    left: Vec<Vec<f64>>,
-    /// Per output: simulated.
-    simulated: Vec<Vec<f64>>,
-    segments: Vec<std::ops::Range<usize>>,
-    inputs: Vec<Vec<f64>>,
-    /// Per output: its sensitivities to the free parameters.
-    sensitivities: Vec<Vec<Vec<f64>>>,
+/// Probability of as much dependence of what a system leaves of records if it is right; `None` where
+/// they are too short to tell. Long records are looked at in windows.
+///
+/// # Errors
+///
+/// If system and records do not go together.
+pub(crate) fn p_value(system: &System, records: &[Record]) -> Result<Option<f64>, EvaluateError> {
+    let windows = windows(records);
+    let records = windows.as_deref().unwrap_or(records);
+    let predicted = calls_for(system, records)?
+        .and_then(|(predictor, noise)| Residuals::predicted(system, records, (&predictor, &noise)));
+    let residuals = predicted.map_or_else(|| Residuals::simulated(system, records), Ok)?;
+    let each = (0..residuals.left.len()).filter_map(|o| of_output(&residuals, o));
+    Ok(combined(&each.collect::<Vec<_>>()))
 }
 
-impl Adequacy {
-    /// Simulates a system along records, or along windows of them where they are long.
-    pub fn of(system: &System, records: &[Record]) -> Result<Self, EvaluateError> {
-        let windows = windows(records);
-        let records = windows.as_deref().unwrap_or(records);
-        let signals = system.signals();
-        let outputs = signals.outputs.len();
-        let mut all = Self {
-            left: vec![vec![]; outputs],
-            simulated: vec![vec![]; outputs],
-            segments: vec![],
-            inputs: vec![vec![]; signals.inputs.len()],
-            sensitivities: vec![vec![]; outputs],
-        };
-        let free: Vec<usize> =
-            (0..signals.parameters.len()).filter(|&p| !signals.parameters[p].fixed).collect();
-        let free = &free[..free.len().min(PARAMETERS)];
-        all.sensitivities.iter_mut().for_each(|of| of.resize(free.len(), vec![]));
-        for record in records {
-            all.add(system, record, free)?;
-        }
-        Ok(all)
-    }
-
-    fn add(
-        &mut self,
-        system: &System,
-        record: &Record,
-        free: &[usize],
-    ) -> Result<(), EvaluateError> {
-        let run = Run::new(system, record)?;
-        let count = run.init_samples(Init::Forgotten);
-        let starts = run.starts(count);
-        let lane = |moved: Option<usize>| {
-            let mut theta = run.plan.signals.theta();
-            if let Some(p) = moved {
-                theta[p] += step_of(theta[p]);
-            }
-            let effect_values = run.plan.effect_values();
-            Lane { theta, effect_values, starts: starts.clone(), ..Lane::default() }
-        };
-        let lanes: Vec<Lane> =
-            std::iter::once(lane(None)).chain(free.iter().map(|&p| lane(Some(p)))).collect();
-        let tracks = system.run(&run.plan, &run.drive, &lanes);
-        let (base, moved) = tracks.split_first().map_or((None, &[][..]), |(b, m)| (Some(b), m));
-        let Some(base) = base else { return Ok(()) };
-        let offset = self.inputs.first().map_or(self.left.first().map_or(0, Vec::len), Vec::len);
-        for (all, own) in self.inputs.iter_mut().zip(&run.drive.inputs) {
-            all.extend(own);
-        }
-        // every segment forgets its own start
-        let usable =
-            |k: usize| run.drive.segments.iter().any(|s| (s.start + count..s.end).contains(&k));
-        for o in 0..self.left.len() {
-            let measured = run.measured[o].as_deref();
-            for k in 0..record.len() {
-                let known = measured.map_or(f64::NAN, |y| y[k]);
-                let known = if usable(k) { known } else { f64::NAN };
-                self.left[o].push(known - base.y[o][k]);
-            }
-            self.simulated[o].extend(&base.y[o]);
-            for ((all, track), &p) in self.sensitivities[o].iter_mut().zip(moved).zip(free) {
-                let step = step_of(run.plan.signals.theta()[p]);
-                let slope = |k: usize| match (track.y[o][k] - base.y[o][k]) / step {
-                    slope if slope.is_finite() => slope,
-                    _ => 0.0,
-                };
-                all.extend((0..record.len()).map(slope));
-            }
-        }
-        let segments = run.drive.segments.iter();
-        self.segments.extend(segments.map(|s| s.start + offset..s.end + offset));
-        Ok(())
-    }
-
-    /// Probability of as much dependence of what is left if the model is right; `None` where the
-    /// records are too short to tell.
-    pub fn p_value(&self) -> Option<f64> {
-        let each = (0..self.left.len()).filter_map(|o| self.test(o));
-        combined(&each.collect::<Vec<_>>())
-    }
-
-    /// The test of what is left of an output.
-    fn test(&self, o: usize) -> Option<f64> {
-        let series = &self.left[o];
-        let n = series.len();
-        let mut tested = self.sensitivities[o].clone();
-        tested.push(vec![1.0; n]);
-        tested.push((0..n).map(|k| k as f64 / n.max(1) as f64).collect());
-        tested.extend(curves(&self.simulated[o], 0));
-        for lag in 0..LAGS {
-            for input in &self.inputs {
-                tested.extend(curves(input, lag));
-            }
-            if lag > 0 && lag < 3 {
-                tested.extend(curves(&self.simulated[o], lag));
-            }
-        }
-        let of = Regression { r: series, segments: &self.segments, nuisance: &[], tested: &tested };
-        of.test().map(|dependence| dependence.p_value)
-    }
+/// The predictor of a system on records that call for one, and its noise: noise inside the plant is more
+/// probable than a free run with coloured noise, or no free run follows them from a start that it forgets.
+fn calls_for(
+    system: &System,
+    records: &[Record],
+) -> Result<Option<(Predictor, Noise)>, EvaluateError> {
+    let is_followed = horizon(system, records)?.is_none();
+    let Ok(predictor) = Predictor::new(system, records) else { return Ok(None) };
+    let rivals = Rivals::of(&predictor);
+    let is_simulated = is_followed && predictor.forgets().unwrap_or(true);
+    Ok(match rivals.inside {
+        Some(_) if is_simulated && !rivals.call_for_more(0.0) => None,
+        Some(Fitted { noise: NoiseModel::Predictor(noise), .. }) => Some((predictor, noise)),
+        _ => None,
+    })
 }
 
-fn step_of(value: f64) -> f64 {
-    DIFFERENCE * if value == 0.0 { 1.0 } else { value.abs() }
+/// The test of what is left of an output.
+fn of_output(of: &Residuals, o: usize) -> Option<f64> {
+    let series = &of.left[o];
+    let n = series.len();
+    let mut tested = of.sensitivities[o].clone();
+    tested.push(vec![1.0; n]);
+    tested.push((0..n).map(|k| k as f64 / n.max(1) as f64).collect());
+    tested.extend(curves(&of.given[o], 0));
+    for lag in usize::from(!of.is_direct)..=LAGS {
+        for input in &of.inputs {
+            tested.extend(curves(input, lag));
+        }
+        if lag > 0 && lag < 3 {
+            tested.extend(curves(&of.given[o], lag));
+        }
+    }
+    let regression = Regression {
+        r: series,
+        segments: &of.segments,
+        nuisance: &of.of_starts[o],
+        tested: &tested,
+    };
+    regression.test().map(|dependence| dependence.p_value)
 }
 
 /// Cauchy combination of p-values.
@@ -176,49 +122,97 @@ mod tests {
         assert!(close(combined(&[1e-10, 0.5]), 2e-10));
     }
 
-    fn first_order(k: f64) -> System {
+    /// x' = K u - a x, both held over 0.1 s.
+    fn first_order(k: f64, a: f64) -> System {
         let text = format!(
             "sampling_time = 0.1\n[model.equations]\ninputs = [{{ name = \"u\" }}]\n\
-             states = [{{ name = \"x\", derivative = \"K*u - x\" }}]\n\
-             outputs = [{{ name = \"y\", value = \"x\" }}]\nparameters = [{{ name = \"K\", value = {k} }}]\n"
+             states = [{{ name = \"x\", derivative = \"K*u - a*x\" }}]\n\
+             outputs = [{{ name = \"y\", value = \"x\" }}]\nparameters = [\
+             {{ name = \"K\", value = {k} }}, {{ name = \"a\", value = {a}, fixed = true }}]\n"
         );
         parse(&text, "first.toml", Format::Toml).unwrap()
     }
 
-    fn record(seed: u64, pole: f64, n: usize) -> Record {
-        let mut random = Random::new(seed);
-        let (mut u, mut x, mut v) = (0.0, 0.0, 0.0);
-        let (mut inputs, mut outputs) = (vec![], vec![]);
-        for _ in 0..n {
-            inputs.push(u);
-            v = pole * v + 0.1 * (1.0 - pole * pole).sqrt() * random.normal();
-            outputs.push(x + v);
-            // K = 2, held input, exact step
-            x = 2.0 * u + (x - 2.0 * u) * (-0.1_f64).exp();
-            u = 0.8 * u + random.normal();
-        }
-        Record::new(0.1).input("u", inputs).unwrap().output("y", outputs).unwrap()
+    /// What disturbs the machine with K = 2, and what drives it.
+    struct Machine {
+        a: f64,
+        /// Pole of the sensor's noise, whose deviation is 0.1.
+        pole: f64,
+        /// Deviation of what is added to the input and not recorded.
+        inside: f64,
+        /// Gain of a controller that reads the output; an input of its own without one.
+        feedback: Option<f64>,
     }
 
-    /// `check` on right models: the p-values spread evenly (Kolmogorov-Smirnov, 1 %), also
-    /// where the noise remembers a tenth of the record.
-    #[test]
-    fn a_right_model_is_rejected_as_often_as_was_said() {
-        let system = first_order(2.0);
-        for pole in [0.0, 0.9] {
-            let mut p: Vec<f64> = (0..120)
-                .map(|seed| {
-                    let record = record(500 + seed, pole, 400);
-                    Adequacy::of(&system, &[record]).unwrap().p_value().unwrap()
-                })
-                .collect();
+    impl Machine {
+        fn record(&self, seed: u64, n: usize) -> Record {
+            let mut random = Random::new(seed);
+            let (mut reference, mut x, mut v) = (0.0, 0.0, 0.0);
+            let (mut inputs, mut outputs) = (vec![], vec![]);
+            let (a, pole) = (self.a, self.pole);
+            let (kept, gained) = match a {
+                0.0 => (1.0, 0.1),
+                a => ((-0.1 * a).exp(), (1.0 - (-0.1 * a).exp()) / a),
+            };
+            for _ in 0..n {
+                v = pole * v + 0.1 * (1.0 - pole * pole).sqrt() * random.normal();
+                let u = self.feedback.map_or(reference, |gain| gain * (reference - x - v));
+                inputs.push(u);
+                outputs.push(x + v);
+                x = kept * x + gained * 2.0 * (u + self.inside * random.normal());
+                reference = 0.8 * reference + random.normal();
+            }
+            Record::new(0.1).input("u", inputs).unwrap().output("y", outputs).unwrap()
+        }
+
+        /// Distance of the p-values of the right model from an even spread (Kolmogorov-Smirnov).
+        fn distance(&self, count: u64) -> f64 {
+            let system = first_order(2.0, self.a);
+            let of = |seed| p_value(&system, &[self.record(500 + seed, 400)]).unwrap().unwrap();
+            let mut p: Vec<f64> = (0..count).map(of).collect();
             p.sort_by(f64::total_cmp);
             let n = p.len() as f64;
             let off = |(k, p): (usize, &f64)| (p - k as f64 / n).max((k + 1) as f64 / n - p);
-            let d = n.sqrt() * p.iter().enumerate().map(off).fold(0.0, f64::max);
-            assert!(d < 1.63, "pole {pole}: {d}");
+            n.sqrt() * p.iter().enumerate().map(off).fold(0.0, f64::max)
         }
-        let wrong = Adequacy::of(&first_order(2.1), &[record(1, 0.9, 1200)]).unwrap();
-        assert!(wrong.p_value().unwrap() < 1e-6);
+
+        /// Whether a model with K = 2.2 is rejected.
+        fn rejects(&self) -> bool {
+            let p = p_value(&first_order(2.2, self.a), &[self.record(1, 1200)]).unwrap();
+            p.unwrap() < 1e-4
+        }
+    }
+
+    /// Level of the distance that chance passes once in a hundred.
+    const UNEVEN: f64 = 1.63;
+
+    /// `check` on right models: the p-values spread evenly, also where the noise remembers a tenth of the
+    /// record.
+    #[test]
+    fn a_right_model_is_rejected_as_often_as_was_said() {
+        for pole in [0.0, 0.9] {
+            let machine = Machine { a: 1.0, pole, inside: 0.0, feedback: None };
+            let d = machine.distance(120);
+            assert!(d < UNEVEN && machine.rejects(), "pole {pole}: {d}");
+        }
+    }
+
+    /// The input of a sample follows from the noise of the same sample, in a plant that forgets and in one
+    /// that integrates, with noise at the sensor and inside the plant.
+    #[test]
+    fn so_it_is_in_a_closed_loop() {
+        for (a, inside) in [(1.0, 0.0), (0.0, 0.0), (0.0, 0.5), (1.0, 0.5)] {
+            let machine = Machine { a, pole: 0.0, inside, feedback: Some(2.0) };
+            let d = machine.distance(60);
+            assert!(d < UNEVEN && machine.rejects(), "a {a}, inside {inside}: {d}");
+        }
+    }
+
+    /// Noise that a slow plant adds up is nearly a random walk.
+    #[test]
+    fn so_it_is_where_a_slow_plant_is_disturbed() {
+        let machine = Machine { a: 0.05, pole: 0.0, inside: 0.3, feedback: None };
+        let d = machine.distance(60);
+        assert!(d < UNEVEN && machine.rejects(), "{d}");
     }
 }

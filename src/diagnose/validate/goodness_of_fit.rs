@@ -1,7 +1,7 @@
 //! Model validation: whether data reject a model at all.
 //!
 //! Two tests share the level (weighted Bonferroni: Genovese, Roeder and Wasserman, Biometrika 93,
-//! 2006): the residual test of [`Adequacy`], whose p-value is uniform if the model is right, with
+//! 2006): the residual test of [`adequacy`], whose p-value is uniform if the model is right, with
 //! weight 0.98, and the first cause that a search names, with weight 0.02. What a search names
 //! has probabilities far below any level, so its weight costs it nothing.
 
@@ -13,9 +13,8 @@ use crate::findings::finding::Verdict;
 use crate::findings::note::Note;
 use crate::prepare::integration_error::unresolved;
 use crate::prepare::windows::thinned;
-use crate::segmentation::horizon;
 use crate::statistics::normal_tail;
-use crate::validate::adequacy::Adequacy;
+use crate::validate::adequacy;
 use crate::watch::Watch;
 
 /// Share of the level that the search has.
@@ -103,12 +102,9 @@ impl Diagnosis<'_> {
         let named = of_the_model.first().and_then(|cause| cause.p_value).unwrap_or(1.0);
         let residual = if unresolved(self.system, records)?.is_some() {
             Some(1.0)
-        } else if horizon(self.system, records)?.is_some() {
-            // a system that does not forget its start has no free run to be judged
-            None
         } else {
             let (mended, _) = self.data_faults(records)?;
-            Adequacy::of(self.system, &mended)?.p_value()
+            adequacy::p_value(self.system, &mended)?
         };
         // records too short for the test are judged by the search's own
         let residual = residual.unwrap_or_else(|| match finding.verdict {

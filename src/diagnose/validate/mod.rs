@@ -7,4 +7,7 @@ pub(crate) mod goodness_of_fit;
 pub(crate) mod independent;
 pub(crate) mod noise_floor;
 pub(crate) mod overlap;
+mod prediction_residuals;
+mod residuals;
+mod simulation_residuals;
 pub(crate) mod test_error;
