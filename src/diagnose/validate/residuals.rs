@@ -1,0 +1,98 @@
+//! What a model leaves of measured outputs, and what a wrong model would leave of them.
+
+use crate::data::Record;
+use crate::evaluate::{EvaluateError, Run};
+use crate::statistics::deviation;
+use crate::system::{Drive, Hold, System};
+
+/// Parameters whose sensitivities are taken, at most.
+const PARAMETERS: usize = 24;
+/// Relative change of a parameter, or of a state, for a finite difference.
+const DIFFERENCE: f64 = 1e-4;
+
+/// Outputs of some records as a model gives them, one record after the other, what they leave of the
+/// measured ones, and what a wrong model would leave.
+pub(super) struct Residuals {
+    /// Per output: what the model leaves, in the output's unit; not a number where nothing is known, or
+    /// where the start is not forgotten.
+    pub left: Vec<Vec<f64>>,
+    /// Per output: simulated, or predicted.
+    pub given: Vec<Vec<f64>>,
+    pub segments: Vec<std::ops::Range<usize>>,
+    pub inputs: Vec<Vec<f64>>,
+    /// Per output: its sensitivities to the free parameters.
+    pub sensitivities: Vec<Vec<Vec<f64>>>,
+    /// Per output: its sensitivities to the starts that were estimated and are not forgotten.
+    pub of_starts: Vec<Vec<Vec<f64>>>,
+    /// Whether an input reaches an output without a state in between.
+    pub is_direct: bool,
+}
+
+impl Residuals {
+    /// No sample yet, of a system and its records.
+    pub fn none(system: &System, records: &[Record]) -> Result<Self, EvaluateError> {
+        let signals = system.signals();
+        let outputs = signals.outputs.len();
+        let is_direct = match records.first() {
+            Some(record) => is_direct(&Run::new(system, record)?),
+            None => false,
+        };
+        Ok(Self {
+            left: vec![vec![]; outputs],
+            given: vec![vec![]; outputs],
+            segments: vec![],
+            inputs: vec![vec![]; signals.inputs.len()],
+            sensitivities: vec![vec![]; outputs],
+            of_starts: vec![vec![]; outputs],
+            is_direct,
+        })
+    }
+
+    /// Adds the inputs of a record, which begins at sample `start` of all.
+    pub fn drive(&mut self, run: &Run<'_>, start: usize) {
+        for (all, own) in self.inputs.iter_mut().zip(&run.drive.inputs) {
+            all.extend(own);
+        }
+        let segments = run.drive.segments.iter();
+        self.segments.extend(segments.map(|s| s.start + start..s.end + start));
+    }
+}
+
+/// The free parameters whose sensitivities are taken.
+pub(super) fn free(system: &System) -> Vec<usize> {
+    let parameters = system.signals().parameters;
+    (0..parameters.len()).filter(|&p| !parameters[p].fixed).take(PARAMETERS).collect()
+}
+
+/// The change of a value for a finite difference.
+pub(super) fn step_of(value: f64) -> f64 {
+    DIFFERENCE * if value == 0.0 { 1.0 } else { value.abs() }
+}
+
+/// Slope of a series by a value that was moved by `step`; 0 where it is no number.
+pub(super) fn slopes(moved: &[f64], base: &[f64], step: f64) -> Vec<f64> {
+    let slope = |(moved, base): (&f64, &f64)| match (moved - base) / step {
+        slope if slope.is_finite() => slope,
+        _ => 0.0,
+    };
+    moved.iter().zip(base).map(slope).collect()
+}
+
+/// Whether a change of the inputs at a sample changes an output at the same sample.
+fn is_direct(run: &Run<'_>) -> bool {
+    if run.system.sampling.hold != Hold::Zero {
+        return true;
+    }
+    let last = |by: f64| {
+        let of = |u: &Vec<f64>| {
+            let first = u.first().copied().unwrap_or_default();
+            vec![first, first + by * deviation(u)]
+        };
+        let inputs = run.drive.inputs.iter().map(of).collect();
+        let drive = Drive { inputs, segments: std::iter::once(0..2).collect(), clocks: vec![0.0] };
+        let lane = run.lane(vec![run.plan.signals.initial()]);
+        let track = run.system.run(&run.plan, &drive, &[lane]).swap_remove(0);
+        track.y.iter().map(|y| y[1]).collect::<Vec<f64>>()
+    };
+    last(0.0) != last(1.0)
+}
