@@ -112,14 +112,10 @@ impl Predictor {
     ///
     /// # Errors
     ///
-    /// [`LikelihoodError::Diverges`], or [`LikelihoodError::Remembers`] for a model with a delay or
-    /// another path whose past is no state.
+    /// [`LikelihoodError::Diverges`] if the very first sample is not finite.
     pub fn ahead(&self, noise: &Noise, horizon: usize) -> Result<Vec<Vec<f64>>, LikelihoodError> {
         let plan = &self.model.plan;
-        if let Some(slot) = plan.slots.iter().find(|slot| is_of_a_path(slot.card.mechanism)) {
-            let effect = slot.effect.typetag_name().to_string();
-            return Err(LikelihoodError::Remembers { effect });
-        }
+        let remembers = plan.slots.iter().any(|slot| is_of_a_path(slot.card.mechanism));
         let diverges = LikelihoodError::Diverges { sample: 0, time: 0.0 };
         let run = self.run(&self.model, noise, Wanted::default())?;
         let pass = Pass::of(&run.path, noise, false);
@@ -139,7 +135,15 @@ impl Predictor {
         for (number, segment) in self.drive.segments.iter().enumerate() {
             plant.start(number);
             for k in segment.start..segment.end.saturating_sub(horizon) {
-                let mut x = path.states[k * n..][..n].to_vec();
+                let updated = &path.states[k * n..][..n];
+                let expected: Vec<f64> =
+                    updated.iter().zip(&path.jump[k * n..]).map(|(x, jump)| x - jump).collect();
+                let mut x = updated.to_vec();
+                let kept = remembers.then(|| plant.memory());
+                if remembers {
+                    plant.place(&expected);
+                    plant.observe(k, &mut y, &mut c, &mut []);
+                }
                 // what enters, each part as one sample ahead and faded from there
                 let entering = |i: i32, force: &mut [f64]| {
                     force.fill(0.0);
@@ -151,7 +155,10 @@ impl Predictor {
                 force.copy_from_slice(&path.force[k * nf..][..nf]);
                 for i in 0..horizon {
                     plant.place(&x);
-                    plant.observe(k + i, &mut y, &mut c, &mut []);
+                    // a path takes a sample once
+                    if i > 0 || !remembers {
+                        plant.observe(k + i, &mut y, &mut c, &mut []);
+                    }
                     plant.advance(k + i, &force, &mut next, &mut to);
                     x.copy_from_slice(&next);
                     entering(i as i32 + 1, &mut force);
@@ -166,6 +173,14 @@ impl Predictor {
                 }
                 for (series, y) in ahead.iter_mut().zip(&y) {
                     series[k + horizon] = *y;
+                }
+                if let Some(kept) = &kept {
+                    plant.recall(kept);
+                    plant.place(&expected);
+                    plant.observe(k, &mut y, &mut c, &mut []);
+                    plant.place(updated);
+                    let force = &path.force[k * nf..][..nf];
+                    plant.advance(k, force, &mut next, &mut to);
                 }
                 // what wanders at an output is known one sample ahead, and decays from there
                 for (i, &output) in layout.wander.iter().enumerate() {

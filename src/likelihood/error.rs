@@ -29,12 +29,6 @@ pub enum LikelihoodError {
         /// That of the first record in s.
         first: f64,
     },
-    /// What the model remembers is no state.
-    #[error("`{effect}` remembers the past of a signal, which is no state that could be predicted")]
-    Remembers {
-        /// Name of the effect.
-        effect: String,
-    },
     /// The predictor leaves the finite numbers.
     #[error("the predictor diverges at sample {sample} (t = {time} s) whatever its noise")]
     Diverges {
@@ -72,9 +66,6 @@ impl Explain for LikelihoodError {
                 Some("give a record with a column for at least one output of the model".into())
             }
             Self::Step { .. } => Some("resample the records to one step, or give them one by one".into()),
-            Self::Remembers { effect } => {
-                Some(format!("simulate it, or leave out the effect `{effect}`"))
-            }
             Self::Diverges { .. } => Some(
                 "check units and initial values of the model, or take more substeps of the integrator"
                     .into(),

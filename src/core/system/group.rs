@@ -35,12 +35,12 @@ pub struct Group<'a, R> {
     pub st: Vec<R>,
     pub ks: [Vec<R>; 4],
     pub outputs: OutputPaths<R>,
-    inputs: InputPaths<R>,
+    pub(super) inputs: InputPaths<R>,
     effect_values: Vec<R>,
     gains: Option<Vec<R>>,
     /// Parameter of the model and of the effect, for every drift.
     drifts: Vec<Drift>,
-    wirings: Vec<Wiring<R>>,
+    pub(super) wirings: Vec<Wiring<R>>,
     /// Own coordinates and outputs, where some effect looks at them.
     coordinates: Vec<R>,
     seen_outputs: Vec<R>,

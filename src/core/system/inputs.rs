@@ -77,6 +77,7 @@ impl<R: EffectNumber> Memory<R> {
 }
 
 /// The filters and curves in the paths of the inputs.
+#[derive(Clone)]
 pub struct InputPaths<R> {
     /// Slot number, input, memory.
     filters: Vec<(usize, usize, Memory<R>)>,

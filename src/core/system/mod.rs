@@ -22,6 +22,7 @@ mod plan;
 mod rate_readings;
 mod rates;
 mod recorded;
+mod remembered;
 mod sampling;
 mod sight;
 mod tables;

@@ -84,6 +84,7 @@ fn place(plan: &Plan, entry: usize) -> Option<(bool, usize)> {
 }
 
 /// One slot's wiring for a group of lanes.
+#[derive(Clone)]
 pub struct Wiring<R> {
     pub slot: usize,
     /// Whether it enters an output, or anything else (or has states to advance).

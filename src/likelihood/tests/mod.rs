@@ -1,6 +1,7 @@
 //! Tests of the likelihood, on plants of their own.
 #![allow(clippy::single_range_in_vec_init)] // a record of one segment
 
+mod ahead;
 mod direct;
 mod filter;
 mod held_out;

@@ -6,6 +6,7 @@
 use super::super::lane::{Drive, Lane};
 use super::super::outputs::OutputPaths;
 use super::super::plan::Plan;
+use super::super::remembered::Remembered;
 use super::Run;
 use super::jacobian::Jacobian;
 use crate::model::{Ask, Block, DIRECTIONS, Dual64, LaneNumber, Law};
@@ -26,6 +27,13 @@ pub(super) struct Simulated<'a> {
     /// What the paths of outputs remembered before these were read, where the law reads them back.
     before: Option<OutputPaths<Dual64>>,
     parameters: bool,
+}
+
+/// What a transition remembers beside states, before it observes a sample.
+pub(super) struct Memory {
+    of: Remembered<Dual64>,
+    /// Whether the sample is the first of its segment.
+    first: bool,
 }
 
 impl<'a> Simulated<'a> {
@@ -115,6 +123,17 @@ impl<'a> Simulated<'a> {
         self.end = self.drive.segments[segment].end;
         self.run.groups.iter_mut().for_each(super::Group::restart);
         self.run.first = true;
+    }
+
+    /// What it remembers beside states.
+    pub fn memory(&self) -> Memory {
+        Memory { of: self.run.groups[0].memory(), first: self.run.first }
+    }
+
+    /// Goes back to what it remembered.
+    pub fn recall(&mut self, memory: &Memory) {
+        self.run.groups[0].recall(&memory.of);
+        self.run.first = memory.first;
     }
 
     pub fn place(&mut self, x: &[f64]) {

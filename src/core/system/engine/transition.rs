@@ -13,7 +13,7 @@ use super::super::lane::{Drive, Lane};
 use super::super::plan::Plan;
 use super::jacobian::Jacobian;
 use super::replayed::Replayed;
-use super::simulated::Simulated;
+use super::simulated::{Memory, Simulated};
 use crate::model::Law;
 
 /// Samples from which on recording a step takes less time than it saves.
@@ -28,6 +28,9 @@ pub struct Transition<'a> {
     read: usize,
     parameters: usize,
 }
+
+/// What a transition remembers beside states; what is recorded remembers nothing.
+pub struct TransitionMemory(Option<Memory>);
 
 /// How a transition is worked out: by its recorded step, or by simulating it.
 enum Way<'a> {
@@ -106,6 +109,21 @@ impl<'a> Transition<'a> {
     /// Goes to the start of a segment.
     pub fn start(&mut self, segment: usize) {
         either!(&mut self.way, way => way.start(segment));
+    }
+
+    /// What is remembered beside states (paths with a delay or a lag, play), before a sample is observed.
+    pub fn memory(&self) -> TransitionMemory {
+        TransitionMemory(match &self.way {
+            Way::Replayed(_) => None,
+            Way::Simulated(way) => Some(way.memory()),
+        })
+    }
+
+    /// Goes back to before a sample was observed.
+    pub fn recall(&mut self, memory: &TransitionMemory) {
+        if let (Way::Simulated(way), Some(memory)) = (&mut self.way, &memory.0) {
+            way.recall(memory);
+        }
     }
 
     /// Puts the states where the filter has them.
