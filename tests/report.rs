@@ -6,6 +6,7 @@ use lacuna::file::{self, Format};
 use lacuna::report::Report;
 use lacuna::system::System;
 
+mod headlines;
 mod test_record;
 
 const MODEL: &str = include_str!("../src/cli/demo/model.toml");

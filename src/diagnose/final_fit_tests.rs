@@ -54,6 +54,7 @@ fn what_diverges_in_the_end_loses_its_last_cause() {
         spikes: vec![vec![]],
         full: false,
         nothing: 0.0,
+        suspected: vec![],
         off: Off::default(),
         withdrawn: vec![],
         refuted: vec![],

@@ -26,11 +26,27 @@ use super::given::{Begun, Given};
 use super::held_out::refutes;
 use super::hypothesis::Hypothesis;
 use super::noise::{Layout, Noise};
+use super::places::Survey;
 use super::predictor::{Predictor, starts};
 use super::ranked::MISSING;
 use super::replay::Pass;
 use super::tangent::Site;
 use super::weigh::{Weighed, plainest};
+
+/// What is thought before anything is named.
+struct First {
+    /// Probability that nothing is missing.
+    nothing: f64,
+    /// Sets of laws that were fitted.
+    sets: Vec<Weighed>,
+}
+
+impl First {
+    fn of(survey: &Survey) -> Self {
+        let something: f64 = survey.sets.iter().map(|set| set.probability).sum();
+        Self { nothing: 1.0 - something, sets: survey.sets.clone() }
+    }
+}
 
 impl Predictor {
     /// What explains the records, at most `most` causes, from causes that are given on; `held` are samples
@@ -50,10 +66,11 @@ impl Predictor {
         let mut fit = self.blinded(held);
         let Begun { null, mut found, mut now } = fit.first_hypothesis(given, noise)?;
         let gain = fit.merit(&now, &found) - fit.merit(&null, &[]);
-        let mut nothing = if found.is_empty() { 1.0 } else { 1.0 / (1.0 + gain.exp()) };
+        let nothing = if found.is_empty() { 1.0 } else { 1.0 / (1.0 + gain.exp()) };
+        let mut first = First { nothing, sets: vec![] };
         let mut seen = BTreeSet::new();
         loop {
-            (found, now) = fit.one_by_one((found, now), most, stop, &mut nothing)?;
+            (found, now) = fit.one_by_one((found, now), most, stop, &mut first)?;
             // laws that give way to each other in turn end where they were before
             let mut exchanged = || {
                 fit.exchanged(&mut found, &mut now)
@@ -71,7 +88,7 @@ impl Predictor {
             withdrawn.push(found.remove(worst.0));
             now = worst.1;
         }
-        all.finished((found, withdrawn), now, nothing)
+        all.finished((found, withdrawn), now, first)
     }
 
     /// Causes one after the other, beside those that are known.
@@ -80,12 +97,12 @@ impl Predictor {
         (mut found, mut now): (Vec<Found>, Hypothesis),
         most: usize,
         stop: &dyn Fn() -> bool,
-        nothing: &mut f64,
+        first: &mut First,
     ) -> Result<(Vec<Found>, Hypothesis), LikelihoodError> {
         while found.len() < most && !stop() {
             let survey = self.holding(&now)?.survey(&now.noise, None)?;
             if found.is_empty() {
-                *nothing = 1.0 - survey.sets.iter().map(|set| set.probability).sum::<f64>();
+                *first = First::of(&survey);
             }
             // a place is chosen twice at most
             let settled = |set: &&Weighed| {
@@ -215,7 +232,7 @@ impl Predictor {
         &self,
         (mut found, withdrawn): (Vec<Found>, Vec<Found>),
         now: Hypothesis,
-        nothing: f64,
+        first: First,
     ) -> Result<Explanation, LikelihoodError> {
         let now = self.fit_all(&mut found, &now.theta, &now.noise).unwrap_or(now);
         dealt(&mut found, &now);
@@ -236,10 +253,12 @@ impl Predictor {
         });
         let causes: Vec<NamedCause> = causes.collect();
         let said = |cause: Found| self.said(cause, &now.theta, vec![]);
+        let suspected = if causes.is_empty() { first.sets } else { vec![] };
         Ok(Explanation {
             causes,
             withdrawn: withdrawn.into_iter().map(said).collect(),
-            nothing,
+            nothing: first.nothing,
+            suspected: suspected.into_iter().map(|set| self.fitted_laws(set)).collect(),
             numbers: now.numbers() + now.noise.count(),
             log_likelihood: now.log_likelihood,
             choice,

@@ -49,6 +49,8 @@ pub struct Explanation {
     pub withdrawn: Vec<NamedCause>,
     /// Probability that nothing is missing.
     pub nothing: f64,
+    /// Where no cause is probable enough to be named: sets of laws that were fitted, the most probable first.
+    pub suspected: Vec<FittedLaws>,
     /// The noise that is left.
     pub noise: Noise,
     /// Exact log likelihood of all innovations.

@@ -174,6 +174,10 @@ pub struct Finding {
     pub verdict_probability: Option<f64>,
     /// Causes in order of discovery.
     pub causes: Vec<Cause>,
+    /// Where nothing is named although something is probably wrong: causes that may be at work, none of them
+    /// probable enough to be named.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub suspected: Vec<Alternative>,
     /// Causes that the test record refutes.
     pub withdrawn: Vec<Withdrawn>,
     /// Which track was chosen.

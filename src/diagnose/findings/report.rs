@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::error::DiagnoseError;
 use crate::evaluate::Metrics;
-use crate::findings::cause::{Cause, Site};
+use crate::findings::cause::{Alternative, Cause, Site};
 use crate::findings::causes::Scores as By;
 use crate::findings::context::{Context, Source};
 use crate::findings::finding::{Left, OtherTrack, Ranked, Scores, Verdict};
@@ -135,6 +135,10 @@ impl Context<'_, '_> {
                 Verdict::CausesFound => Some(1.0 - chosen.found.nothing),
                 _ => None,
             },
+            suspected: match verdict {
+                Verdict::NothingFound => suspected(chosen),
+                _ => vec![],
+            },
             withdrawn,
             missing: vec![],
         })
@@ -244,4 +248,13 @@ impl Context<'_, '_> {
             test: TestSeries::default(),
         }
     }
+}
+
+/// Causes that may be at work, where one of them rather is than none.
+fn suspected(chosen: &Finished) -> Vec<Alternative> {
+    if chosen.found.nothing > 0.5 {
+        return vec![];
+    }
+    let suspected = chosen.found.suspected.iter();
+    suspected.map(|(cause, chance)| cause.alternative(0.0).weighed(*chance)).collect()
 }

@@ -111,6 +111,8 @@ pub(crate) struct Found {
     pub full: bool,
     /// Probability that nothing is wrong.
     pub nothing: f64,
+    /// Causes that may be at work where none is probable enough to be named, with their probabilities.
+    pub suspected: Vec<(Arc<Candidate>, f64)>,
     /// Probabilities that parameters of the model are off.
     pub off: Off,
     /// Causes that were taken back: samples that were not fitted are more probable without them.

@@ -19,6 +19,7 @@
 mod compete;
 mod conversion;
 mod missing;
+mod of_library;
 mod reconsidered;
 mod unforeseen;
 

@@ -265,6 +265,7 @@ fn concluded(mut study: Study<'_, '_>, first: Option<Screen>) -> Option<Searched
         spikes: study.problem.spikes(),
         full: headline.causes() >= study.most && study.most > 0,
         nothing,
+        suspected: vec![],
         off: off(&study, instead),
         withdrawn,
         refuted: vec![],

@@ -15,4 +15,5 @@ mod plants;
 mod smoother;
 mod stationary;
 mod steady;
+mod suspected;
 mod tangent;

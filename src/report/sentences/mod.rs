@@ -44,10 +44,13 @@ pub fn headline(finding: &Finding) -> String {
     let lines = match finding.verdict {
         Verdict::NothingFound => vec![rest::nothing(finding)],
         Verdict::Unexplained => {
-            let first =
+            let mut first =
                 "Unexplained: what is left depends on the inputs, and nothing in the library \
                          accounts for it."
                     .to_string();
+            if let single @ 1.. = finding.single_records.len() {
+                first += &format!(" But {}.", rest::on_their_own(finding, single));
+            }
             std::iter::once(first).chain(ordered(finding).into_iter().map(cause)).collect()
         }
         _ => ordered(finding).into_iter().map(cause).collect(),

@@ -216,10 +216,34 @@ pub(super) fn supposed_right(held: &[String]) -> Option<String> {
     })
 }
 
+/// How many records have causes of their own.
+pub fn on_their_own(finding: &Finding, single: usize) -> String {
+    format!("{single} of {} records have causes of their own, shown below", finding.record.records)
+}
+
+/// What is rather wrong than right, and cannot be named.
+fn suspicion(finding: &Finding) -> Option<String> {
+    let nothing = finding.verdict_probability.filter(|_| !finding.suspected.is_empty())?;
+    let all: Vec<String> =
+        finding.suspected.iter().map(|other| alternative(&finding.held, other)).collect();
+    Some(format!(
+        "Nothing found that is certain: something is probably missing ({}), but no cause reaches the odds of \
+         150 to 1 at which one is named. It may be {}. A longer record, or one with more excitation, would \
+         tell.",
+        percent(1.0 - nothing),
+        super::names(&all, NAMES)
+    ))
+}
+
 /// Why there are no causes, how good the model is, and what this record could not have shown.
 pub fn nothing(finding: &Finding) -> String {
-    let mut text =
-        "Nothing found: what the model leaves does not depend on the inputs.".to_string();
+    let mut text = match (suspicion(finding), finding.single_records.len()) {
+        (_, single @ 1..) => {
+            format!("Nothing found in all records alike; {}.", on_their_own(finding, single))
+        }
+        (Some(suspicion), _) => suspicion,
+        _ => "Nothing found: what the model leaves does not depend on the inputs.".to_string(),
+    };
     let noise = |name: &String| {
         let left = finding.left.get(name)?;
         let ratio = left.ratio_to_noise.map(over_noise);
