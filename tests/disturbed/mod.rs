@@ -13,6 +13,7 @@ mod more;
 mod rectified;
 mod revolving;
 mod sluggish;
+mod tight_loop;
 
 use lacuna::data::{Record, Signal};
 use lacuna::diagnose::{Diagnosis, Finding};

@@ -1,5 +1,6 @@
 //! Says how wrong a model is, in the output's unit.
 
+mod direct;
 mod error;
 mod forgetting;
 mod metric;

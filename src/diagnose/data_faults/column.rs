@@ -2,7 +2,7 @@
 
 use super::{Fault, FaultKind};
 use crate::data::Record;
-use crate::evaluate::{EvaluateError, Init, Simulation};
+use crate::evaluate::{EvaluateError, Init, Run, Simulation};
 use crate::innovations::criterion;
 use crate::system::System;
 use crate::validate::noise_floor::{Left, predicted};
@@ -47,10 +47,11 @@ fn noise(system: &System, records: &[Record]) -> Result<f64, EvaluateError> {
     for record in records {
         let run = Simulation::of(system, record, Init::Forgotten)?;
         let inputs: Vec<&[f64]> = record.inputs.iter().map(|u| &u.values[..]).collect();
+        let first_lag = usize::from(!Run::new(system, record)?.is_direct());
         for (signal, (_, y)) in record.outputs.iter().zip(&run.outputs) {
             let left: Vec<f64> = signal.values.iter().zip(y).map(|(a, b)| a - b).collect();
-            let floor =
-                predicted(Left { r: &left, drives: &inputs }).map_or(0.0, |floor| floor.std);
+            let floor = predicted(Left { r: &left, drives: &inputs, first_lag })
+                .map_or(0.0, |floor| floor.std);
             sum += (floor / signal.std().max(1e-300)).powi(2);
             count += 1.0;
         }

@@ -11,7 +11,6 @@ use crate::fit::finished::Finished;
 use crate::fit::problem::{Part, Problem};
 use crate::prepare::operating_range::Nominal;
 use crate::statistics::{deviation, mean, wald};
-use crate::system::Hold;
 
 /// Score above which an input reacts; chance passes it in one of 30 000 tests.
 const REACTS: f64 = 4.0;
@@ -70,8 +69,7 @@ fn closed_loop(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>]) -> Opti
         })
         .collect();
     // an output that has something of the input of the same sample may have more of it
-    let held = problem.system.sampling.hold == Hold::Zero;
-    let direct = !held || (0..problem.base.sizes.u).any(|i| nominal.is_direct(problem, i));
+    let direct = nominal.first_lag(problem) == 0;
     let loops = scores(&problem.drive.inputs, &left, &stretches);
     let names = &problem.base.signals.inputs;
     let found = loops.into_iter().zip(names).filter_map(|((at_once, later), signal)| {

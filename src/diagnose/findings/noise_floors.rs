@@ -28,7 +28,7 @@ impl Context<'_, '_> {
         used: &[Record],
     ) -> BTreeMap<String, NoiseFloor> {
         let problem = self.problem;
-        let share = self.share(chosen);
+        let (share, first_lag) = (self.share(chosen), self.nominal.first_lag(self.problem));
         let left = self.off(&chosen.y);
         let of = |o: usize| {
             let periods = used.first().filter(|_| used.len() == 1).and_then(Record::periods);
@@ -47,10 +47,11 @@ impl Context<'_, '_> {
                     change: &[],
                     inputs: &self.joined.drive.inputs,
                     segments: &self.joined.drive.segments,
+                    first_lag,
                 };
                 independent(&of, share)
             };
-            repeated.or_else(own).or_else(|| predicted(Left { r: &off[o], drives }))
+            repeated.or_else(own).or_else(|| predicted(Left { r: &off[o], drives, first_lag }))
         };
         let signals = problem.base.signals.outputs.par_iter().enumerate();
         let entry = |floor: Floor| NoiseFloor { std: floor.std, method: floor.method.into() };
@@ -66,7 +67,7 @@ impl Context<'_, '_> {
         before: &Scored,
         (off, drives): (&[Vec<f64>], &[&[f64]]),
     ) -> Vec<Option<Floor>> {
-        let share = self.share(chosen);
+        let (share, first_lag) = (self.share(chosen), self.nominal.first_lag(self.problem));
         let inputs = data.inputs(drives.len());
         let ends = test.begins.iter().skip(1).copied();
         let count = test.measured.iter().map(Vec::len).max().unwrap_or(0);
@@ -79,11 +80,13 @@ impl Context<'_, '_> {
             let (inputs, segments) = (&test.inputs[..], &segments[..]);
             let change: Vec<f64> =
                 simulated.iter().zip(&test.before[o]).map(|(a, b)| a - b).collect();
-            let of = Simulated { left: &left, simulated, change: &change, inputs, segments };
+            let of =
+                Simulated { left: &left, simulated, change: &change, inputs, segments, first_lag };
             whole.then(|| independent(&of, share)).flatten()
         };
-        let foretold =
-            |o: usize| data.predicted(&before.errors[o], &inputs, Left { r: &off[o], drives });
+        let foretold = |o: usize| {
+            data.predicted(&before.errors[o], &inputs, Left { r: &off[o], drives, first_lag })
+        };
         let floor = |o| data.repeated(o).or_else(|| own(o)).or_else(|| foretold(o));
         (0..before.errors.len()).into_par_iter().map(floor).collect()
     }

@@ -108,7 +108,7 @@ fn drifts_in_a_loop(prepared: &Prepared<'_>, allowed: &Allowed) -> Option<bool> 
     let NoiseModel::Predictor(noise) = base.fit_noise().ok()?.noise else { return None };
     let innovations = base.innovations(&noise, true).ok()?.values;
     let both = problem.y.iter().zip(&innovations);
-    let foreseen: Vec<Vec<f64>> = both.map(|(y, e)| foreseen(y, e.iter())).collect();
+    let foreseen: Vec<Vec<f64>> = both.map(|(y, e)| foreseen(y, e)).collect();
     Some(prepared.context().feedback_of(&foreseen).is_some())
 }
 

@@ -35,16 +35,12 @@ pub(super) fn unforeseen(
     noise: &Noise,
 ) -> Option<f64> {
     let innovations = of.innovations(noise, true).ok()?.values;
-    // what was not foreseen of the next sample, against all up to this one
-    let next = problem
-        .y
-        .iter()
-        .zip(&innovations)
-        .map(|(y, e)| foreseen(y, e.iter().skip(1).chain(std::iter::once(&f64::NAN))));
-    Some(dependence(problem, nominal, &next.collect::<Vec<Vec<f64>>>()))
+    let both = problem.y.iter().zip(&innovations);
+    let foreseen: Vec<Vec<f64>> = both.map(|(y, e)| foreseen(y, e)).collect();
+    Some(dependence(problem, nominal, &foreseen))
 }
 
 /// Outputs less the innovations of the same samples; as measured where there are none.
-pub(super) fn foreseen<'e>(y: &[f64], innovations: impl Iterator<Item = &'e f64>) -> Vec<f64> {
+pub(super) fn foreseen(y: &[f64], innovations: &[f64]) -> Vec<f64> {
     y.iter().zip(innovations).map(|(y, e)| if e.is_finite() { y - e } else { *y }).collect()
 }

@@ -121,6 +121,7 @@ impl<'a> Planner<'a> {
 fn noise(prepared: &Prepared<'_>, records: &[Record]) -> Option<Vec<NoiseFloor>> {
     let (problem, joined) = (&prepared.problem, &prepared.joined);
     let y0 = problem.simulate(&prepared.start, Grain::Fine)?;
+    let first_lag = prepared.nominal.first_lag(problem);
     let floor = |o: usize| {
         let periods = records.first().filter(|_| records.len() == 1).and_then(Record::periods);
         let of_periods = periods.and_then(|p| {
@@ -130,7 +131,7 @@ fn noise(prepared: &Prepared<'_>, records: &[Record]) -> Option<Vec<NoiseFloor>>
         let r: Vec<f64> = joined.measured[o].iter().zip(&y0[o]).map(|(y, s)| y - s).collect();
         let drives: Vec<&[f64]> = joined.drive.inputs.iter().map(Vec::as_slice).collect();
         let floor = of_periods
-            .or_else(|| predicted(Left { r: &r, drives: &drives }))
+            .or_else(|| predicted(Left { r: &r, drives: &drives, first_lag }))
             .filter(|f| f.std > 0.0);
         let (std, method) = match floor {
             Some(floor) => (floor.std, floor.method),

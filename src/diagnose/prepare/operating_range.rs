@@ -10,7 +10,7 @@ use crate::prepare::direct::direct;
 use crate::prepare::pushes::Pushes;
 use crate::prepare::regressors::Features;
 use crate::statistics::{deviation, median, rms};
-use crate::system::{Origin, Track};
+use crate::system::{Hold, Origin, Track};
 
 /// Samples at which slopes are looked at.
 const POINTS: usize = 9;
@@ -114,7 +114,8 @@ impl Nominal {
 
     /// What residuals of this record are regressed on; `None` where it is too short.
     pub fn features(&self, problem: &Problem<'_>) -> Option<&Features> {
-        self.features.get_or_init(|| Features::new(problem, |entry| self.series(entry))).as_ref()
+        let series = |entry| (self.series(entry), self.first_lag_of(problem, entry));
+        self.features.get_or_init(|| Features::new(problem, series)).as_ref()
     }
 
     /// The factor between the columns of two targets that are parallel everywhere:
@@ -140,14 +141,37 @@ impl Nominal {
 
     /// Whether an input reaches an output without a state in between.
     pub fn is_direct(&self, problem: &Problem<'_>, input: usize) -> bool {
+        (0..self.sizes.y).any(|o| self.moves_at_once(problem, input, (Ask::Output, o)))
+    }
+
+    /// Whether an input moves an output, or an own coordinate, of the same sample.
+    fn moves_at_once(&self, problem: &Problem<'_>, input: usize, (ask, i): (Ask, usize)) -> bool {
         let law = problem.system.model.as_ref();
         let along = crate::model::probe::unit(self.sizes.u, input);
-        let mut slopes = self
-            .pushes
-            .points
-            .iter()
-            .flat_map(|point| slope(law, self.sizes, Ask::Output, point, Along::Input(&along)));
-        slopes.any(|slope| slope != 0.0)
+        let slope = |point| slope(law, self.sizes, ask, point, Along::Input(&along))[i];
+        self.pushes.points.iter().map(slope).any(|slope| slope != 0.0)
+    }
+
+    /// The sample from which on inputs may tell of what a model leaves: the same one (0) where an output has
+    /// something of it, else the one before (1). There a right model leaves the input of the same sample out,
+    /// and a controller that reads the output makes it follow the noise.
+    pub fn first_lag(&self, problem: &Problem<'_>) -> usize {
+        let held = problem.system.sampling.hold == Hold::Zero;
+        usize::from(held && !(0..self.sizes.u).any(|i| self.is_direct(problem, i)))
+    }
+
+    /// The same for what an entry of the table of sources tells.
+    fn first_lag_of(&self, problem: &Problem<'_>, entry: usize) -> usize {
+        let asked = match problem.base.sources.entries[entry].1 {
+            Origin::Input(_) => return self.first_lag(problem),
+            Origin::Own(i) => (Ask::Coordinates, i),
+            Origin::Output(o) => (Ask::Output, o),
+            Origin::Time | Origin::State(_) => return 0,
+        };
+        match (0..self.sizes.u).any(|input| self.moves_at_once(problem, input, asked)) {
+            true => self.first_lag(problem),
+            false => 0,
+        }
     }
 
     /// What a search for effects of one source needs to know.

@@ -31,9 +31,13 @@ pub(crate) struct Features {
 }
 
 impl Features {
-    /// The features along a record; `None` where it is too short.
-    pub fn new<'s>(problem: &Problem<'_>, series: impl Fn(usize) -> &'s [f64]) -> Option<Self> {
-        let end = problem.len().min(series(0).len());
+    /// The features along a record, of entries of the table of sources with the lag from which on each
+    /// counts; `None` where it is too short.
+    pub fn new<'s>(
+        problem: &Problem<'_>,
+        series: impl Fn(usize) -> (&'s [f64], usize),
+    ) -> Option<Self> {
+        let end = problem.len().min(series(0).0.len());
         let from = end.saturating_sub(MOST);
         let n = end - from;
         let reach = REACH.min(n / 8);
@@ -96,7 +100,7 @@ impl Features {
 /// Lagged curves of every coordinate and input.
 fn lagged<'s>(
     problem: &Problem<'_>,
-    series: &impl Fn(usize) -> &'s [f64],
+    series: &impl Fn(usize) -> (&'s [f64], usize),
     from: usize,
     n: usize,
     reach: usize,
@@ -117,7 +121,8 @@ fn lagged<'s>(
     lags.dedup();
     let mut columns = vec![];
     for entry in kept {
-        let z = &series(entry)[from..from + n];
+        let (z, first) = series(entry);
+        let z = &z[from..from + n];
         let (centre, size) = (mean(z), deviation(z));
         if !(size > 0.0) {
             continue;
@@ -125,7 +130,7 @@ fn lagged<'s>(
         let unit: Vec<f64> = z.iter().map(|v| (v - centre) / size).collect();
         for curve in CURVES {
             let bent: Vec<f64> = unit.iter().map(|&v| curve(v)).collect();
-            for &lag in &lags {
+            for &lag in lags.iter().filter(|&&lag| lag >= first) {
                 let mut column = vec![0.0; n];
                 column[lag..].copy_from_slice(&bent[..n - lag]);
                 columns.push(column);

@@ -32,6 +32,8 @@ pub(crate) struct Simulated<'a> {
     pub change: &'a [f64],
     pub inputs: &'a [Vec<f64>],
     pub segments: &'a [std::ops::Range<usize>],
+    /// Sample from which on inputs may tell of what is left: the same one (0), or the one before (1).
+    pub first_lag: usize,
 }
 
 /// The noise of an output where what a model leaves of it depends on nothing; `share` is the number of
@@ -39,7 +41,9 @@ pub(crate) struct Simulated<'a> {
 pub(crate) fn independent(of: &Simulated<'_>, share: f64) -> Option<Floor> {
     let tested: Vec<Vec<f64>> = curves(of.simulated, 0)
         .into_iter()
-        .chain((0..LAGS).flat_map(|lag| of.inputs.iter().flat_map(move |u| curves(u, lag))))
+        .chain(
+            (of.first_lag..LAGS).flat_map(|lag| of.inputs.iter().flat_map(move |u| curves(u, lag))),
+        )
         .collect();
     let nuisance = [vec![1.0; of.left.len()]];
     let regression =
@@ -114,7 +118,7 @@ mod tests {
         let (segments, inputs) = ([0..4000], [u.clone()]);
         let floor = |left: &[f64]| {
             let (inputs, segments, change) = (&inputs[..], &segments[..], &u[..]);
-            let of = Simulated { left, simulated: &u, change, inputs, segments };
+            let of = Simulated { left, simulated: &u, change, inputs, segments, first_lag: 0 };
             independent(&of, 1e-3)
         };
         let found = floor(&noise).unwrap();

@@ -17,7 +17,7 @@ pub struct NoiseFloor {
 
 /// Past values of the residual that predict the next one.
 const PAST: usize = 16;
-/// Samples that inputs are looked back by.
+/// Samples that inputs are looked back by; the same sample where it reaches the output.
 const LAGS: [usize; 4] = [0, 1, 2, 4];
 /// What inputs enter as.
 const CURVES: [fn(f64) -> f64; 3] = [|z| z, |z| z * z.abs(), |z| z * z];
@@ -44,6 +44,8 @@ pub struct Floor {
 pub(crate) struct Left<'a> {
     pub r: &'a [f64],
     pub drives: &'a [&'a [f64]],
+    /// Sample from which on inputs may tell of the residual: the same one (0), or the one before (1).
+    pub first_lag: usize,
 }
 
 /// From repeated periods: what differs between a sample and the same one a period later is
@@ -90,13 +92,19 @@ impl Left<'_> {
     }
 
     fn width(&self) -> usize {
-        PAST + self.drives.len() * CURVES.len() * LAGS.len() + 1
+        PAST + self.drives.len() * CURVES.len() * self.lags().len() + 1
+    }
+
+    fn lags(&self) -> &'static [usize] {
+        &LAGS[self.first_lag.min(1)..]
     }
 
     /// What sample `k` is predicted from, inputs in units of `scales`.
     fn features(&self, k: usize, scales: &[f64]) -> impl Iterator<Item = f64> {
         let drives = self.drives.iter().zip(scales).flat_map(move |(drive, scale)| {
-            CURVES.iter().flat_map(move |curve| LAGS.map(|lag| curve(drive[k - lag] / scale)))
+            CURVES.iter().flat_map(move |curve| {
+                self.lags().iter().map(move |&lag| curve(drive[k - lag] / scale))
+            })
         });
         (1..=PAST).map(move |back| self.r[k - back]).chain(drives).chain([1.0])
     }
@@ -160,7 +168,7 @@ mod tests {
         let e = noise(4000);
         let u: Vec<f64> = (0..4000).map(|k| (k as f64 * 0.05).sin()).collect();
         let r: Vec<f64> = e.iter().zip(&u).map(|(e, u)| e + 5.0 * u * u.abs()).collect();
-        let floor = predicted(Left { r: &r, drives: &[&u] }).unwrap();
+        let floor = predicted(Left { r: &r, drives: &[&u], first_lag: 0 }).unwrap();
         assert!((floor.std - 1.0).abs() < 0.06, "{floor:?}");
     }
 
@@ -170,9 +178,10 @@ mod tests {
         let e = noise(1000);
         let u: Vec<f64> = (0..1000).map(|k| (k as f64 * 0.05).sin()).collect();
         let r: Vec<f64> = e.iter().zip(&u).map(|(e, u)| e + 5.0 * u * u.abs()).collect();
-        let few = Left { r: &r[840..], drives: &[&u[840..]] };
+        let few = Left { r: &r[840..], drives: &[&u[840..]], first_lag: 0 };
         assert!(predicted(few).is_none());
-        let floor = predicted_by(Left { r: &r[..840], drives: &[&u[..840]] }, few).unwrap();
+        let floor =
+            predicted_by(Left { r: &r[..840], drives: &[&u[..840]], first_lag: 0 }, few).unwrap();
         let scored = (e[856..].iter().map(|e| e * e).sum::<f64>() / 144.0).sqrt();
         assert!((floor.std / scored - 1.0).abs() < 0.04, "{floor:?} {scored}");
     }

@@ -2,8 +2,7 @@
 
 use crate::data::Record;
 use crate::evaluate::{EvaluateError, Run};
-use crate::statistics::deviation;
-use crate::system::{Drive, Hold, System};
+use crate::system::System;
 
 /// Parameters whose sensitivities are taken, at most.
 const PARAMETERS: usize = 24;
@@ -34,7 +33,7 @@ impl Residuals {
         let signals = system.signals();
         let outputs = signals.outputs.len();
         let is_direct = match records.first() {
-            Some(record) => is_direct(&Run::new(system, record)?),
+            Some(record) => Run::new(system, record)?.is_direct(),
             None => false,
         };
         Ok(Self {
@@ -76,23 +75,4 @@ pub(super) fn slopes(moved: &[f64], base: &[f64], step: f64) -> Vec<f64> {
         _ => 0.0,
     };
     moved.iter().zip(base).map(slope).collect()
-}
-
-/// Whether a change of the inputs at a sample changes an output at the same sample.
-fn is_direct(run: &Run<'_>) -> bool {
-    if run.system.sampling.hold != Hold::Zero {
-        return true;
-    }
-    let last = |by: f64| {
-        let of = |u: &Vec<f64>| {
-            let first = u.first().copied().unwrap_or_default();
-            vec![first, first + by * deviation(u)]
-        };
-        let inputs = run.drive.inputs.iter().map(of).collect();
-        let drive = Drive { inputs, segments: std::iter::once(0..2).collect(), clocks: vec![0.0] };
-        let lane = run.lane(vec![run.plan.signals.initial()]);
-        let track = run.system.run(&run.plan, &drive, &[lane]).swap_remove(0);
-        track.y.iter().map(|y| y[1]).collect::<Vec<f64>>()
-    };
-    last(0.0) != last(1.0)
 }

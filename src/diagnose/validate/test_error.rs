@@ -141,7 +141,7 @@ impl TestData {
         // inputs and errors end together
         let n = scored.len();
         let lent: Vec<&[f64]> = inputs.iter().map(|u| &u[u.len().saturating_sub(n)..]).collect();
-        let scored = Left { r: scored, drives: &lent };
+        let scored = Left { r: scored, drives: &lent, first_lag: learnt.first_lag };
         let both = [predicted_by(learnt, scored), predicted(scored)];
         both.into_iter().flatten().min_by(|a, b| a.std.total_cmp(&b.std))
     }
