@@ -55,5 +55,6 @@ pub use findings::series::{Curve, OtherLaw, Series, TestSeries};
 pub use fit::hypothesis::{Moved, Track};
 pub use memory::Memory;
 pub use plan::{Experiment, LookAlikes, Outlook, Planner, Supposed, Visibility};
+pub use validate::ahead::Ahead;
 pub use validate::goodness_of_fit::GoodnessOfFit;
 pub use validate::noise_floor::NoiseFloor;

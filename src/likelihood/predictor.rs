@@ -157,6 +157,11 @@ impl Predictor {
         channels * plan.sources.named + 2 * plan.sizes.y + plan.signals.parameters.len()
     }
 
+    /// Sampling time of the records in s.
+    pub fn step(&self) -> f64 {
+        self.model.plan.sampling_time
+    }
+
     /// Number of samples.
     pub fn len(&self) -> usize {
         self.drive.len()

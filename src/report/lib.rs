@@ -36,7 +36,7 @@ mod training;
 
 use std::path::Path;
 
-use crate::diagnose::{Finding, Outlook, Verdict};
+use crate::diagnose::{Finding, Gain, Outlook, Verdict};
 use crate::digits::number;
 use crate::system::System;
 pub use missing::MissingReport;
@@ -208,13 +208,14 @@ impl<'a> Report<'a> {
                 ),
             );
         }
-        let gain = &finding.gain;
-        let [low, high] = sentences::shares(gain.interval95);
-        page.element("p", "note", &format!(
-            "{:.1} % of the mean square error above the noise floor is gone (95 % interval {low} to {high} %); \
-             RMSE over all outputs times {}.",
-            100.0 * gain.error_removed, number(gain.test_rmse_ratio, None),
-        ));
+        match &finding.ahead {
+            Some(found) => {
+                for sentence in sentences::ahead(finding, found) {
+                    page.element("p", "note", &sentence);
+                }
+            }
+            None => shares_of_gain(page, &finding.gain),
+        }
         if let Some(promise) = finding.false_discovery.as_ref().filter(|f| f.confirmed > 0) {
             page.element("p", "note", &format!(
                 "Tested on data that neither fitted nor chose it: {} of {} causes in the machine confirmed, \
@@ -236,3 +237,13 @@ const FOOTER: &str = "Read from top to bottom: what was found, how it shows, wha
 considered, what is left. A value \"a \u{b1} b\" has b as two standard errors. \"Removable\" is the mean \
 square error above the noise floor. A look-alike would remove nearly as much: the record cannot tell \
 it from the cause named; a runner-up would remove clearly less.";
+
+/// What the extended model removes of the error of a simulation.
+fn shares_of_gain(page: &mut Page, gain: &Gain) {
+    let [low, high] = sentences::shares(gain.interval95);
+    page.element("p", "note", &format!(
+        "{:.1} % of the mean square error above the noise floor is gone (95 % interval {low} to {high} %); \
+         RMSE over all outputs times {}.",
+        100.0 * gain.error_removed, number(gain.test_rmse_ratio, None),
+    ));
+}

@@ -155,6 +155,8 @@ pub struct Wording {
     pub push: f64,
     /// Whether physics allows one sign only, so that a magnitude says all.
     pub one_sign: bool,
+    /// Whether it was judged by what predictions miss: a simulation without it tells nothing of it.
+    pub by_predictions: bool,
     /// How its size is stated.
     pub size: Size,
     /// The sum by which it is stated, with its own standard error.

@@ -11,34 +11,19 @@ use crate::findings::cause::{
 };
 use crate::findings::context::Context;
 use crate::findings::note::Note;
+use crate::findings::scoring::Scores;
 use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::found::SET;
 use crate::fit::problem::Added;
 use crate::validate::false_discovery::{either, on_test};
-use crate::validate::noise_floor::Floor;
-use crate::validate::test_error::{Scored, TestData, removed};
-use crate::watch::Watch;
+use crate::validate::test_error::removed;
 
 /// Spikes below this number and this share are chance.
 const SPIKES: usize = 3;
 const SPIKE_SHARE: f64 = 5e-4;
 /// Candidates that are supposed where their number was not kept.
 const MANY: usize = 1000;
-
-/// What causes are scored by.
-pub(crate) struct Scores<'a> {
-    pub test: &'a TestData,
-    pub before: &'a Scored,
-    pub after: &'a Scored,
-    pub floors: &'a [Option<Floor>],
-    /// Rows of the first samples of joined records.
-    pub firsts: &'a [usize],
-    /// Whether the joined records are records, of which each may show a cause or not.
-    pub several: bool,
-    /// Says whether somebody asks to stop: what is refitted then ends where it has come to.
-    pub watch: &'a dyn Watch,
-}
 
 impl Context<'_, '_> {
     /// The causes that were added to the model, then the parameters that moved.
@@ -94,7 +79,11 @@ impl Context<'_, '_> {
         let candidates = chosen.found.first.as_ref().map_or(MANY, |screen| screen.columns);
         // all of them together do no less than one of them
         let score = own.iter().map(|&i| chosen.found.slots[i].score).fold(0.0, f64::max);
-        let p_value = Some(either(on_test(without, by.after), score, candidates));
+        let on_test = match by.predicted {
+            None => on_test(without, by.after),
+            Some(errors) => self.by_predictions(errors, &model.without_all(&own))?,
+        };
+        let p_value = Some(either(on_test, score, candidates));
         let own = by_likeness(self.problem, self.nominal, model, own);
         let mut parts: Vec<LawPart> = own.iter().map(|&i| self.part(chosen, i)).collect();
         let (cause, slot) = (&model.added[own[0]].cause, &chosen.found.slots[own[0]]);

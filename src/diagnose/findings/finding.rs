@@ -16,6 +16,7 @@ use crate::findings::note::Note;
 use crate::findings::series::Series;
 use crate::fit::hypothesis::{Moved, Track};
 use crate::system::System;
+use crate::validate::ahead::Ahead;
 use crate::validate::noise_floor::NoiseFloor;
 
 /// A cause that was found and is refuted: the extended model does not have it.
@@ -199,6 +200,10 @@ pub struct Finding {
     pub false_discovery: Option<FalseDiscovery>,
     /// What was gained.
     pub gain: Gain,
+    /// What was gained in predictions, where causes were judged by innovations: a simulation drifts by noise
+    /// inside the plant.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ahead: Option<Ahead>,
     /// What is left, per output.
     pub left: BTreeMap<String, Left>,
     /// Score that what is left still depends on the inputs.

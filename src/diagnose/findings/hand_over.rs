@@ -16,6 +16,7 @@ use crate::findings::note::Note;
 use crate::findings::series::Series;
 use crate::fit::hypothesis::Track;
 use crate::system::System;
+use crate::validate::ahead::Ahead;
 use crate::validate::noise_floor::NoiseFloor;
 
 /// What one search over records without faults ended with. Fields are those of [`Finding`].
@@ -33,6 +34,7 @@ pub(crate) struct Searched {
     pub after: Scores,
     pub false_discovery: Option<FalseDiscovery>,
     pub gain: Gain,
+    pub ahead: Option<Ahead>,
     pub left: BTreeMap<String, Left>,
     pub dependence: f64,
     pub missing: Vec<MissingForce>,
@@ -108,6 +110,7 @@ impl Searched {
             after: self.after,
             false_discovery: self.false_discovery,
             gain: self.gain,
+            ahead: self.ahead,
             left: self.left,
             dependence: self.dependence,
             missing: self.missing,

@@ -48,6 +48,10 @@ impl Context<'_, '_> {
         if from.watch.stopped() || named == 0 && !(chosen.dependence > DEPENDS) {
             return None;
         }
+        // what simulations leave is no evidence where noise inside the plant makes them drift
+        if chosen.is_by_innovations() {
+            return None;
+        }
         let mut base = from.start.clone();
         base.added = chosen.fitted.model.added[..chosen.fitted.model.known()].to_vec();
         let models: Vec<Model> = self.informative(&base)?;

@@ -23,6 +23,7 @@ pub(crate) mod pictures;
 mod rectified;
 pub(crate) mod remarks;
 pub(crate) mod report;
+pub(crate) mod scoring;
 pub(crate) mod series;
 pub(crate) mod value;
 pub(crate) mod withdrawn;

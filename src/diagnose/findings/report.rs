@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use crate::error::DiagnoseError;
 use crate::evaluate::Metrics;
 use crate::findings::cause::{Alternative, Cause, Site};
-use crate::findings::causes::Scores as By;
 use crate::findings::context::{Context, Source};
 use crate::findings::finding::{Left, OtherTrack, Ranked, Scores, Verdict};
 use crate::findings::hand_over::Searched;
 use crate::findings::order::most_first;
 use crate::findings::remarks::made_up_for;
+use crate::findings::scoring::Scores as By;
 use crate::findings::series::{Series, TestSeries};
 use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
@@ -20,8 +20,10 @@ use crate::fit::refit::{Refit, Stop};
 use crate::likelihood::OutputNoise;
 use crate::prepare::input_dependence::DEPENDS;
 use crate::statistics::{mean, rms, whiteness};
+use crate::validate::ahead::ahead;
 use crate::validate::false_discovery::false_discovery;
 use crate::validate::gain::gain;
+use crate::validate::innovation_errors::InnovationErrors;
 use crate::validate::noise_floor::NoiseFloor;
 use crate::validate::test_error::Counted;
 use crate::watch::Watch;
@@ -53,8 +55,11 @@ impl Context<'_, '_> {
         let floors = self.floors_of_test(chosen, (test, &tested), &before, (&off_before, &drives));
         // stretches of one record are no records
         let several = self.joined.spans.len() > 1 && !matches!(test.counted, Counted::All);
+        let is_predicted = chosen.is_by_innovations() && !from.watch.stopped();
+        let predicted = is_predicted.then(|| InnovationErrors::of(&extended, test)).flatten();
         let by = By {
             test,
+            predicted: predicted.as_ref(),
             before: &before,
             after: &after,
             floors: &floors,
@@ -63,6 +68,9 @@ impl Context<'_, '_> {
             watch: from.watch,
         };
         let mut causes = self.causes(chosen, &by)?;
+        for cause in causes.iter_mut().filter(|cause| !cause.is_data_fault()) {
+            cause.wording.by_predictions = chosen.is_by_innovations();
+        }
         let held = self.held_instead(chosen, from, &mut causes);
         let false_discovery = false_discovery(&causes);
         let mut series = self.series(chosen, &y_before, &causes);
@@ -87,6 +95,10 @@ impl Context<'_, '_> {
             (0, _) => Verdict::DataFault,
             _ => Verdict::CausesFound,
         };
+        // a simulation tells little of the gain where noise is inside the plant
+        let is_predicted = is_predicted && structural > 0 && !from.watch.stopped();
+        let seconds = self.nominal.time_scale;
+        let ahead = is_predicted.then(|| ahead(system, &extended, test, seconds)).flatten();
         let mut notes = self.of_the_record();
         notes.extend(self.notes(chosen, &causes));
         notes.extend(levels.into_iter().flatten());
@@ -116,6 +128,7 @@ impl Context<'_, '_> {
             before: Scores { data: self.data_metrics(&y_before), test: before.metrics },
             after: Scores { data: self.data_metrics(&chosen.y), test: after.metrics },
             false_discovery,
+            ahead,
             gain,
             left: self.left(chosen, &noise_floor),
             dependence: chosen.dependence,

@@ -4,8 +4,8 @@ use crate::candidates::naming::{parameter_effect, title_of};
 use crate::error::DiagnoseError;
 use crate::evidence::has_moved;
 use crate::findings::cause::{Alternative, Cause, LawPart, Site, Value, Wording};
-use crate::findings::causes::Scores;
 use crate::findings::context::Context;
+use crate::findings::scoring::Scores;
 use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::found::{Instead, SET};
@@ -35,7 +35,15 @@ impl Context<'_, '_> {
                 Some(back) => {
                     let scored = by.test.score(&extended(self.problem, back)?)?;
                     let share = removed(by.before, &scored, by.after, by.floors);
-                    (share, on_test(&scored, by.after))
+                    let on_test = match by.predicted {
+                        None => on_test(&scored, by.after),
+                        Some(errors) => {
+                            let mut without = chosen.fitted.model.clone();
+                            without.theta[p] = moved.from;
+                            self.by_predictions(errors, &without)?
+                        }
+                    };
+                    (share, on_test)
                 }
                 None => (0.0, 1.0),
             };

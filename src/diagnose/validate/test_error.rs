@@ -70,7 +70,7 @@ impl TestData {
     }
 
     /// The first sample of a record that counts.
-    fn first(&self, record: usize, run: &Run<'_>) -> usize {
+    pub(super) fn first(&self, record: usize, run: &Run<'_>) -> usize {
         match &self.counted {
             Counted::After(init) => run.init_samples(*init),
             Counted::From(from) => from[record],

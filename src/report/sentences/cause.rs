@@ -80,8 +80,11 @@ fn sure(law: Option<f64>, place: Option<f64>) -> String {
 }
 
 /// What it is needed for, which is no share of a whole: causes that make up for each other are
-/// needed for little each.
+/// needed for little each. Of a cause that was judged by predictions, a simulation without it tells nothing.
 fn needed(cause: &Cause) -> String {
+    if cause.wording.by_predictions {
+        return String::new();
+    }
     let what = percent(cause.error_removed);
     format!("; without it {what} of the removable error comes back")
 }

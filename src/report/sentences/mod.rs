@@ -27,7 +27,8 @@ pub use self::{
     plan::{experiment, look_alikes as pair, outlook, visibility},
     rest::details,
     rest::{
-        all_left, fit, gain, held, look_alikes, record, rmse, shares, unweighed, why_less_sure,
+        ahead, all_left, fit, gain, held, look_alikes, record, rmse, shares, unweighed,
+        why_less_sure,
     },
     size::formula,
     withdrawn::withdrawn,
