@@ -21,32 +21,16 @@ use nalgebra::DMatrix;
 
 use super::error::LikelihoodError;
 use super::explanation::{Explanation, NamedCause};
-use super::found::{Found, dealt, joined};
+use super::found::{First, Found, dealt, joined};
 use super::given::{Begun, Given};
 use super::held_out::refutes;
 use super::hypothesis::Hypothesis;
 use super::noise::{Layout, Noise};
-use super::places::Survey;
 use super::predictor::{Predictor, starts};
 use super::ranked::MISSING;
 use super::replay::Pass;
 use super::tangent::Site;
 use super::weigh::{Weighed, plainest};
-
-/// What is thought before anything is named.
-struct First {
-    /// Probability that nothing is missing.
-    nothing: f64,
-    /// Sets of laws that were fitted.
-    sets: Vec<Weighed>,
-}
-
-impl First {
-    fn of(survey: &Survey) -> Self {
-        let something: f64 = survey.sets.iter().map(|set| set.probability).sum();
-        Self { nothing: 1.0 - something, sets: survey.sets.clone() }
-    }
-}
 
 impl Predictor {
     /// What explains the records, at most `most` causes, from causes that are given on; `held` are samples
@@ -81,10 +65,15 @@ impl Predictor {
                 break;
             }
         }
-        fit.pruned_causes(&mut found, &mut now, &null);
+        // what is known is told at once to somebody who asks to stop
+        if !stop() {
+            fit.pruned_causes(&mut found, &mut now, &null);
+        }
         let all = Self { start: fit.start.clone(), ..self.clone() };
         let mut withdrawn = vec![];
-        while let Some(worst) = all.refuted(&fit, &found, &now, &null, held) {
+        while !stop()
+            && let Some(worst) = all.refuted(&fit, &found, &now, &null, held)
+        {
             withdrawn.push(found.remove(worst.0));
             now = worst.1;
         }
@@ -100,7 +89,7 @@ impl Predictor {
         first: &mut First,
     ) -> Result<(Vec<Found>, Hypothesis), LikelihoodError> {
         while found.len() < most && !stop() {
-            let survey = self.holding(&now)?.survey(&now.noise, None)?;
+            let survey = self.holding(&now)?.survey(&now.noise, None, stop)?;
             if found.is_empty() {
                 *first = First::of(&survey);
             }
@@ -113,6 +102,9 @@ impl Predictor {
                 found.iter().find(at).is_some_and(is_settled)
             };
             let open: Vec<Weighed> = survey.sets.iter().filter(|s| !settled(s)).cloned().collect();
+            if stop() {
+                break;
+            }
             let Some(best) = plainest(&open).filter(|set| set.log_odds > MISSING) else {
                 let Some(more) = self.joint_fit(&survey, &open, (&found, &now)) else { break };
                 (found, now) = more;
@@ -126,7 +118,7 @@ impl Predictor {
                     let old = kept.remove(at);
                     let parts = joined(&kept);
                     let rest = Hypothesis { parts, ..now.clone() };
-                    let again = self.holding(&rest)?.survey(&now.noise, Some(old.place))?;
+                    let again = self.holding(&rest)?.survey(&now.noise, Some(old.place), stop)?;
                     let Some(first) = plainest(&again.sets) else { break };
                     let cause = self.of(&again, first);
                     // the place was chosen among all of them

@@ -50,6 +50,21 @@ impl Found {
     }
 }
 
+/// What is thought before anything is named.
+pub(super) struct First {
+    /// Probability that nothing is missing.
+    pub nothing: f64,
+    /// Sets of laws that were fitted.
+    pub sets: Vec<Weighed>,
+}
+
+impl First {
+    pub fn of(survey: &Survey) -> Self {
+        let something: f64 = survey.sets.iter().map(|set| set.probability).sum();
+        Self { nothing: 1.0 - something, sets: survey.sets.clone() }
+    }
+}
+
 impl Predictor {
     /// All causes fitted together, the noise anew; they have the fitted parts then.
     pub(super) fn fit_all(

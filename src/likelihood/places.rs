@@ -67,7 +67,7 @@ struct Led {
 
 impl Predictor {
     fn places(&self, noise: &Noise) -> Result<RankedPlaces, LikelihoodError> {
-        let Survey { null, mut places, sets } = self.survey(noise, None)?;
+        let Survey { null, mut places, sets } = self.survey(noise, None, &|| false)?;
         let sets: Vec<FittedLaws> = sets.into_iter().map(|set| self.fitted_laws(set)).collect();
         // an exact fit knows better than a curve on the old path
         for place in &mut places {
@@ -79,11 +79,13 @@ impl Predictor {
         Ok(RankedPlaces { noise: null.noise, log_likelihood: null.log_likelihood, places, sets })
     }
 
-    /// Places and sets of laws of one cause, at one place only where that is given.
+    /// Places and sets of laws of one cause, at one place only where that is given; no more places are fitted
+    /// once `stop` says so.
     pub(crate) fn survey(
         &self,
         noise: &Noise,
         at: Option<(Site, Option<usize>)>,
+        stop: &dyn Fn() -> bool,
     ) -> Result<Survey, LikelihoodError> {
         let null = self.renewed(&self.model, noise, 2)?;
         let wanted = Wanted { theta: true, seen: true, gate: Some(self.gate()) };
@@ -118,7 +120,7 @@ impl Predictor {
         let mut fitted: Vec<(Hypothesis, usize)> = vec![];
         let (mut done, mut quick): (Vec<usize>, Option<Self>) = (vec![], None);
         for place in led.iter().filter(|led| led.value > 0.0) {
-            if done.iter().filter(|&&s| s != place.spot).count() >= FITTED {
+            if done.iter().filter(|&&s| s != place.spot).count() >= FITTED || stop() {
                 break;
             }
             done.push(place.spot);
@@ -127,7 +129,9 @@ impl Predictor {
         }
         let merits = fitted.iter().map(|(h, _)| h.criterion(self.observed()));
         let best = merits.fold(nothing.criterion(self.observed()), f64::max);
-        fitted.extend(self.remembering((&pass.z, &null.noise), &spots, best));
+        if !stop() {
+            fitted.extend(self.remembering((&pass.z, &null.noise), &spots, best));
+        }
         let sets = self.weighed(&nothing, fitted, &spots);
         Ok(Survey { null, places, sets })
     }
