@@ -6,7 +6,7 @@ use crate::likelihood::{Explanation, Given, Noise, NoiseModel, Predictor};
 
 use super::compete::{CLEARLY, Rivals, extended_by, left, predictor};
 use super::conversion::{carried_over, finished};
-use super::unforeseen::{leaves_noise_inside, unforeseen};
+use super::unforeseen::{foreseen, leaves_noise_inside, unforeseen};
 use crate::candidates::candidate::Wire;
 use crate::candidates::library::{Allowed, library};
 use crate::criteria::LEAVES;
@@ -41,6 +41,9 @@ pub(crate) fn search(
     most: usize,
     watch: &dyn Watch,
 ) -> Result<Answer, DiagnoseError> {
+    if let Some(found) = directly(prepared, allowed, most, watch)? {
+        return Ok((found, None));
+    }
     let (may_ask, start) = (may_be_asked(prepared, allowed, most), prepared.start.clone());
     let is_disturbed = Cell::new(false);
     let breaks_off = |problem: &Problem<'_>, nominal: &Nominal, model: &Model| {
@@ -64,12 +67,49 @@ pub(crate) fn search(
     Ok(reconsidered(prepared, allowed, most, answer, watch))
 }
 
+/// What the innovations find in a closed loop about a model that forgets nothing within its records,
+/// where noise inside the plant is called for beside it. A free run of such a model follows that noise,
+/// which the loop feeds back, and not the causes (Forssell and Ljung, Automatica 35, 1999).
+fn directly(
+    prepared: &mut Prepared<'_>,
+    allowed: &Allowed,
+    most: usize,
+    watch: &dyn Watch,
+) -> Result<Option<Finished>, DiagnoseError> {
+    if !may_be_asked(prepared, allowed, most)
+        || !drifts_in_a_loop(prepared, allowed).unwrap_or(false)
+    {
+        return Ok(None);
+    }
+    let nothing = prepared.search(allowed, 0, watch)?;
+    watch.report(0.1, "searching by innovations");
+    let found = by_innovations(prepared, allowed, most, &nothing, watch);
+    // nothing is an answer where what is not foreseen follows from no input
+    let is_all = |found: &Finished| found.causes() == 0 || accounts(prepared, found);
+    let found = found.filter(is_all);
+    Ok(found.filter(|found| is_called_for(prepared, allowed, found).unwrap_or(false)))
+}
+
 /// Whether an answer accounts for nearly all that a free run of the model leaves: what does not, has to
 /// compete with the answer of free runs.
 fn accounts(prepared: &Prepared<'_>, found: &Finished) -> bool {
     let of = |model| left(&prepared.problem, model);
     let both = of(&prepared.start).zip(of(&found.fitted.model));
     both.is_some_and(|(before, after)| 1.0 - (after / before).powi(2) > ACCOUNTED)
+}
+
+/// Whether a model forgets nothing within its records, and an input reacts to what it did not foresee.
+fn drifts_in_a_loop(prepared: &Prepared<'_>, allowed: &Allowed) -> Option<bool> {
+    let problem = &prepared.problem;
+    let base = predictor(problem, &prepared.start, allowed).ok()?;
+    if base.forgets().ok()? {
+        return Some(false);
+    }
+    let NoiseModel::Predictor(noise) = base.fit_noise().ok()?.noise else { return None };
+    let innovations = base.innovations(&noise, true).ok()?.values;
+    let both = problem.y.iter().zip(&innovations);
+    let foreseen: Vec<Vec<f64>> = both.map(|(y, e)| foreseen(y, e)).collect();
+    Some(prepared.context().feedback_of(&foreseen).is_some())
 }
 
 /// Whether the model that is diagnosed forgets where it starts within its records.
@@ -178,28 +218,16 @@ fn by_innovations(
         base.explain((given, most), &held, noise, &|| watch.stopped()).ok()
     };
     let is_better = |found: &Explanation| found.criterion() > of_answer;
-    let from_answer = given(problem, answer).and_then(|given| explained(&given, None));
-    // an answer that accounts for what simulations leave, and goes on to leave nothing that follows from inputs, is
-    // all; else each search may end in a place of its own
-    let is_all = |found: &Explanation| {
-        let own = || finished(prepared, &known, (&base, found));
-        let depends = || depends(prepared, (&base, found), &own()?);
-        is_better(found)
-            && accounts(prepared, answer)
-            && depends().is_some_and(|score| score <= DEPENDS)
-    };
     // innovations tell nothing of a sensor whose branch they do not know
-    let turns = turns_a_sensor(problem, &answer.fitted.model);
-    let from_nothing = match turns || from_answer.as_ref().is_some_and(is_all) {
+    let from_nothing = match turns_a_sensor(problem, &answer.fitted.model) {
         true => None,
         false => explained(&Given::default(), noise),
     };
     let none = is_bare && from_nothing.as_ref().is_some_and(|found| found.causes.is_empty());
-    let found = [from_nothing, from_answer]
-        .into_iter()
-        .flatten()
-        .filter(|found| none || is_better(found))
-        .max_by(|a, b| a.criterion().total_cmp(&b.criterion()))?;
+    let found = match from_nothing.filter(|found| none || is_better(found)) {
+        Some(found) => found,
+        None => explained(&given(problem, answer)?, None).filter(is_better)?,
+    };
     let mut answer = finished(prepared, &known, (&base, &found))?;
     answer.dependence = depends(prepared, (&base, &found), &answer)?;
     if none && answer.dependence > DEPENDS {
