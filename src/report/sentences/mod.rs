@@ -7,6 +7,7 @@ mod cause;
 mod column;
 mod inside;
 mod notes;
+mod nothing;
 mod plan;
 mod rest;
 mod size;
@@ -43,14 +44,14 @@ use crate::diagnose::{Cause, Finding, Verdict};
 #[doc(hidden)]
 pub fn headline(finding: &Finding) -> String {
     let lines = match finding.verdict {
-        Verdict::NothingFound => vec![rest::nothing(finding)],
+        Verdict::NothingFound => vec![nothing::nothing(finding)],
         Verdict::Unexplained => {
             let mut first =
                 "Unexplained: what is left depends on the inputs, and nothing in the library \
                          accounts for it."
                     .to_string();
             if let single @ 1.. = finding.single_records.len() {
-                first += &format!(" But {}.", rest::on_their_own(finding, single));
+                first += &format!(" But {}.", nothing::on_their_own(finding, single));
             }
             std::iter::once(first).chain(ordered(finding).into_iter().map(cause)).collect()
         }
