@@ -1,16 +1,15 @@
 //! Noise inside the plant: whether records call for it, and what is wrong where they do.
 //!
 //! ```text
-//! the model forgets nothing within its records, and these are of a closed loop:
-//!     causes <- by the innovations; where noise inside the plant is called for beside them: the answer
 //! answer <- the search by free runs; after its first chain:
 //!     noise inside the plant is called for beside the answer, and that foresees all that follows from inputs:
 //!         causes <- by the innovations; where noise inside the plant is called for beside them: the answer
 //! what it leaves is white                     keep it: all noise sits at the sensors
 //! free run with coloured noise as likely as a predictor with noise inside: keep it
-//! causes <- by the innovations of the predictor (`likelihood::Predictor::explain`), from nothing on, and where that is
-//!     not more probable than the answer, from the answer's causes on
-//! they are more probable than the answer under either noise: they replace it
+//! causes <- by the innovations of the predictor (`likelihood::Predictor::explain`), from the answer's causes on; unless
+//!     they leave nothing that follows from inputs, and noise inside makes no more than a part of what the answer's
+//!     simulation leaves: also from nothing on, and the more probable of the two
+//! they are not clearly less probable than the answer under either noise: they replace it
 //! ```
 //!
 //! Everything is compared by log L - (numbers) / 2 ln(samples) - ln(choices) on the same samples

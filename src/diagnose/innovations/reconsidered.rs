@@ -24,7 +24,7 @@ use crate::watch::Watch;
 
 /// Score of the Ljung-Box test up to which what is left counts as white.
 const WHITE: f64 = 3.0;
-/// Share of the mean square that a free run leaves for which an answer has to account by itself.
+/// Share of the mean square that a simulation leaves that is nearly all of it.
 const ACCOUNTED: f64 = 0.95;
 
 /// Causes that a search by innovations begins with, at most: each is left out in turn.
@@ -41,9 +41,6 @@ pub(crate) fn search(
     most: usize,
     watch: &dyn Watch,
 ) -> Result<Answer, DiagnoseError> {
-    if let Some(found) = directly(prepared, allowed, most, watch)? {
-        return Ok((found, None));
-    }
     let (may_ask, start) = (may_be_asked(prepared, allowed, most), prepared.start.clone());
     let is_disturbed = Cell::new(false);
     let breaks_off = |problem: &Problem<'_>, nominal: &Nominal, model: &Model| {
@@ -65,51 +62,6 @@ pub(crate) fn search(
         }
     }
     Ok(reconsidered(prepared, allowed, most, answer, watch))
-}
-
-/// What the innovations find in a closed loop about a model that forgets nothing within its records,
-/// where noise inside the plant is called for beside it. A free run of such a model follows that noise,
-/// which the loop feeds back, and not the causes (Forssell and Ljung, Automatica 35, 1999).
-fn directly(
-    prepared: &mut Prepared<'_>,
-    allowed: &Allowed,
-    most: usize,
-    watch: &dyn Watch,
-) -> Result<Option<Finished>, DiagnoseError> {
-    if !may_be_asked(prepared, allowed, most)
-        || !drifts_in_a_loop(prepared, allowed).unwrap_or(false)
-    {
-        return Ok(None);
-    }
-    let nothing = prepared.search(allowed, 0, watch)?;
-    watch.report(0.1, "searching by innovations");
-    let found = by_innovations(prepared, allowed, most, &nothing, watch);
-    // nothing is an answer where what is not foreseen follows from no input
-    let is_all = |found: &Finished| found.causes() == 0 || accounts(prepared, found);
-    let found = found.filter(is_all);
-    Ok(found.filter(|found| is_called_for(prepared, allowed, found).unwrap_or(false)))
-}
-
-/// Whether an answer accounts for nearly all that a free run of the model leaves: what does not, has to
-/// compete with the answer of free runs.
-fn accounts(prepared: &Prepared<'_>, found: &Finished) -> bool {
-    let of = |model| left(&prepared.problem, model);
-    let both = of(&prepared.start).zip(of(&found.fitted.model));
-    both.is_some_and(|(before, after)| 1.0 - (after / before).powi(2) > ACCOUNTED)
-}
-
-/// Whether a model forgets nothing within its records, and an input reacts to what it did not foresee.
-fn drifts_in_a_loop(prepared: &Prepared<'_>, allowed: &Allowed) -> Option<bool> {
-    let problem = &prepared.problem;
-    let base = predictor(problem, &prepared.start, allowed).ok()?;
-    if base.forgets().ok()? {
-        return Some(false);
-    }
-    let NoiseModel::Predictor(noise) = base.fit_noise().ok()?.noise else { return None };
-    let innovations = base.innovations(&noise, true).ok()?.values;
-    let both = problem.y.iter().zip(&innovations);
-    let foreseen: Vec<Vec<f64>> = both.map(|(y, e)| foreseen(y, e)).collect();
-    Some(prepared.context().feedback_of(&foreseen).is_some())
 }
 
 /// Whether the model that is diagnosed forgets where it starts within its records.
@@ -217,17 +169,31 @@ fn by_innovations(
     let explained = |given: &Given, noise: Option<&Noise>| {
         base.explain((given, most), &held, noise, &|| watch.stopped()).ok()
     };
-    let is_better = |found: &Explanation| found.criterion() > of_answer;
+    // beside noise inside the plant, numbers of simulations and their errors are not to be had: of two answers
+    // that are as probable, the one by innovations is taken
+    let is_better = |found: &Explanation| found.criterion() > of_answer - CLEARLY;
+    let from_answer = given(problem, answer).and_then(|given| explained(&given, None));
+    // an answer that goes on to leave nothing that follows from inputs is all, unless noise inside makes most of
+    // what its simulation leaves; else each search may end in a place of its own
+    let is_all = |found: &Explanation| {
+        let own = || finished(prepared, &known, (&base, found));
+        let depends = || depends(prepared, (&base, found), &own()?);
+        is_better(found)
+            && !drifts(prepared, (&base, found), answer).unwrap_or(true)
+            && depends().is_some_and(|score| score <= DEPENDS)
+    };
     // innovations tell nothing of a sensor whose branch they do not know
-    let from_nothing = match turns_a_sensor(problem, &answer.fitted.model) {
+    let turns = turns_a_sensor(problem, &answer.fitted.model);
+    let from_nothing = match turns || from_answer.as_ref().is_some_and(is_all) {
         true => None,
         false => explained(&Given::default(), noise),
     };
     let none = is_bare && from_nothing.as_ref().is_some_and(|found| found.causes.is_empty());
-    let found = match from_nothing.filter(|found| none || is_better(found)) {
-        Some(found) => found,
-        None => explained(&given(problem, answer)?, None).filter(is_better)?,
-    };
+    let found = [from_nothing, from_answer]
+        .into_iter()
+        .flatten()
+        .filter(|found| none || is_better(found))
+        .max_by(|a, b| a.criterion().total_cmp(&b.criterion()))?;
     let mut answer = finished(prepared, &known, (&base, &found))?;
     answer.dependence = depends(prepared, (&base, &found), &answer)?;
     if none && answer.dependence > DEPENDS {
@@ -247,6 +213,22 @@ fn given(problem: &Problem<'_>, answer: &Finished) -> Option<Given> {
     let laws = placed(problem, &theta, &model.added[model.known()..]);
     let given = Given::new(laws, &problem.baseline().theta, &theta);
     (1..=BEGUN_WITH).contains(&given.count()).then_some(given)
+}
+
+/// Whether noise inside the plant makes nearly all of what the simulation of an answer leaves: what a predictor
+/// under it leaves is little of that.
+fn drifts(
+    prepared: &Prepared<'_>,
+    (base, found): (&Predictor, &Explanation),
+    answer: &Finished,
+) -> Option<bool> {
+    let problem = &prepared.problem;
+    let with = extended_by(base, problem, &answer.fitted.model)?;
+    let innovations = with.innovations(&found.noise, true).ok()?.values;
+    let both = problem.y.iter().zip(&innovations);
+    let foreseen: Vec<Vec<f64>> = both.map(|(y, e)| foreseen(y, e)).collect();
+    let left = |y: &[Vec<f64>]| problem.mean_square(y, Part::All);
+    Some(1.0 - left(&foreseen) / left(&answer.y) > ACCOUNTED)
 }
 
 /// The score of `unforeseen` of an explanation.
