@@ -176,11 +176,11 @@ fn by_innovations(
     // an answer that goes on to leave nothing that follows from inputs is all, unless noise inside makes most of
     // what its simulation leaves; else each search may end in a place of its own
     let is_all = |found: &Explanation| {
-        let own = || finished(prepared, &known, (&base, found));
-        let depends = || depends(prepared, (&base, found), &own()?);
-        is_better(found)
-            && !drifts(prepared, (&base, found), answer).unwrap_or(true)
-            && depends().is_some_and(|score| score <= DEPENDS)
+        let own = finished(prepared, &known, (&base, found)).filter(|_| is_better(found));
+        own.is_some_and(|own| {
+            !drifts(prepared, (&base, found), (&own, answer)).unwrap_or(true)
+                && depends(prepared, (&base, found), &own).is_some_and(|score| score <= DEPENDS)
+        })
     };
     // innovations tell nothing of a sensor whose branch they do not know
     let turns = turns_a_sensor(problem, &answer.fitted.model);
@@ -216,14 +216,14 @@ fn given(problem: &Problem<'_>, answer: &Finished) -> Option<Given> {
 }
 
 /// Whether noise inside the plant makes nearly all of what the simulation of an answer leaves: what a predictor
-/// under it leaves is little of that.
+/// of what was found from there leaves is little of that.
 fn drifts(
     prepared: &Prepared<'_>,
     (base, found): (&Predictor, &Explanation),
-    answer: &Finished,
+    (own, answer): (&Finished, &Finished),
 ) -> Option<bool> {
     let problem = &prepared.problem;
-    let with = extended_by(base, problem, &answer.fitted.model)?;
+    let with = extended_by(base, problem, &own.fitted.model)?.starting(found.starts.clone());
     let innovations = with.innovations(&found.noise, true).ok()?.values;
     let both = problem.y.iter().zip(&innovations);
     let foreseen: Vec<Vec<f64>> = both.map(|(y, e)| foreseen(y, e)).collect();
