@@ -136,12 +136,14 @@ impl Predictor {
             plant.start(number);
             for k in segment.start..segment.end.saturating_sub(horizon) {
                 let updated = &path.states[k * n..][..n];
-                let expected: Vec<f64> =
-                    updated.iter().zip(&path.jump[k * n..]).map(|(x, jump)| x - jump).collect();
                 let mut x = updated.to_vec();
-                let kept = remembers.then(|| plant.memory());
-                if remembers {
-                    plant.place(&expected);
+                // what a path remembers is gone back to, and observes the sample as the filter did
+                let before = remembers.then(|| {
+                    let both = updated.iter().zip(&path.jump[k * n..]);
+                    (plant.memory(), both.map(|(x, jump)| x - jump).collect::<Vec<f64>>())
+                });
+                if let Some((_, expected)) = &before {
+                    plant.place(expected);
                     plant.observe(k, &mut y, &mut c, &mut []);
                 }
                 // what enters, each part as one sample ahead and faded from there
@@ -174,9 +176,9 @@ impl Predictor {
                 for (series, y) in ahead.iter_mut().zip(&y) {
                     series[k + horizon] = *y;
                 }
-                if let Some(kept) = &kept {
-                    plant.recall(kept);
-                    plant.place(&expected);
+                if let Some((memory, expected)) = &before {
+                    plant.recall(memory);
+                    plant.place(expected);
                     plant.observe(k, &mut y, &mut c, &mut []);
                     plant.place(updated);
                     let force = &path.force[k * nf..][..nf];

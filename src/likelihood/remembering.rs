@@ -20,8 +20,8 @@ use super::screen::Spotted;
 const RACING: usize = 2;
 
 impl Predictor {
-    /// The laws that remember which gain the most on standardised innovations `z`, each with its place among `spots`; fitted to the end where they
-    /// are near `best`, the criterion of the best of all others.
+    /// The laws that remember which gain the most on standardised innovations `z`, each with its place among
+    /// `spots`; fitted to the end where they are near `best`, the criterion of the best of all others.
     pub(super) fn remembering(
         &self,
         (z, noise): (&[f64], &Noise),

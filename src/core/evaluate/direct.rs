@@ -12,10 +12,11 @@ use crate::system::{Drive, Hold};
 const AT: [usize; 4] = [1, 8, 32, 63];
 
 impl Run<'_> {
-    /// Whether a change of the inputs at a sample changes an output at the same sample.
-    pub fn is_direct(&self) -> bool {
+    /// The sample from which on inputs may tell of what a model leaves: the same one (0) where a change of the
+    /// inputs there changes an output, else the one before (1).
+    pub fn first_lag(&self) -> usize {
         if self.system.sampling.hold != Hold::Zero {
-            return true;
+            return 0;
         }
         let last = |k: usize, by: f64| {
             let of = |u: &Vec<f64>| {
@@ -30,6 +31,7 @@ impl Run<'_> {
             let track = self.system.run(&self.plan, &drive, &[lane]).swap_remove(0);
             track.y.iter().map(|y| y[k].to_bits()).collect::<Vec<u64>>()
         };
-        AT.into_iter().filter(|&k| k < self.drive.len()).any(|k| last(k, 0.0) != last(k, 1.0))
+        let is_direct = |k: usize| k < self.drive.len() && last(k, 0.0) != last(k, 1.0);
+        usize::from(!AT.into_iter().any(is_direct))
     }
 }

@@ -6,7 +6,6 @@ use super::outputs::OutputPaths;
 use super::wiring::{EffectNumber, Wiring};
 
 /// What a group remembers beside states: what is on its way in its paths, and where its plays are.
-#[derive(Clone)]
 pub struct Remembered<R> {
     outputs: OutputPaths<R>,
     inputs: InputPaths<R>,

@@ -47,7 +47,7 @@ fn noise(system: &System, records: &[Record]) -> Result<f64, EvaluateError> {
     for record in records {
         let run = Simulation::of(system, record, Init::Forgotten)?;
         let inputs: Vec<&[f64]> = record.inputs.iter().map(|u| &u.values[..]).collect();
-        let first_lag = usize::from(!Run::new(system, record)?.is_direct());
+        let first_lag = Run::new(system, record)?.first_lag();
         for (signal, (_, y)) in record.outputs.iter().zip(&run.outputs) {
             let left: Vec<f64> = signal.values.iter().zip(y).map(|(a, b)| a - b).collect();
             let floor = predicted(Left { r: &left, drives: &inputs, first_lag })

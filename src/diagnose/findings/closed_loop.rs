@@ -50,12 +50,7 @@ impl Context<'_, '_> {
     pub fn feedback(&self, chosen: &Finished, used: &[Record]) -> Option<ClosedLoop> {
         // what repeats exactly while the noise does not reacts to nothing
         let repeats = used.iter().all(|record| record.periods().is_some());
-        (!repeats).then(|| self.feedback_of(&chosen.y)).flatten()
-    }
-
-    /// The input that reacts most to what outputs `y` of a model leave, if one does.
-    pub fn feedback_of(&self, y: &[Vec<f64>]) -> Option<ClosedLoop> {
-        closed_loop(self.problem, self.nominal, y)
+        (!repeats).then(|| closed_loop(self.problem, self.nominal, &chosen.y)).flatten()
     }
 }
 

@@ -172,30 +172,31 @@ fn by_innovations(
     // beside noise inside the plant, numbers of simulations and their errors are not to be had: of two answers
     // that are as probable, the one by innovations is taken
     let is_better = |found: &Explanation| found.criterion() > of_answer - CLEARLY;
+    let concluded = |found: &Explanation| {
+        let mut own = finished(prepared, &known, (&base, found))?;
+        own.dependence = depends(prepared, (&base, found), &own)?;
+        Some(own)
+    };
     let from_answer = given(problem, answer).and_then(|given| explained(&given, None));
+    let gone_on = from_answer.as_ref().filter(|found| is_better(found)).and_then(concluded);
     // an answer that goes on to leave nothing that follows from inputs is all, unless noise inside makes most of
     // what its simulation leaves; else each search may end in a place of its own
-    let is_all = |found: &Explanation| {
-        let own = finished(prepared, &known, (&base, found)).filter(|_| is_better(found));
-        own.is_some_and(|own| {
-            !drifts(prepared, (&base, found), (&own, answer)).unwrap_or(true)
-                && depends(prepared, (&base, found), &own).is_some_and(|score| score <= DEPENDS)
-        })
-    };
+    let is_all = from_answer.as_ref().zip(gone_on.as_ref()).is_some_and(|(found, own)| {
+        own.dependence <= DEPENDS
+            && !drifts(prepared, (&base, found), (own, answer)).unwrap_or(true)
+    });
     // innovations tell nothing of a sensor whose branch they do not know
-    let turns = turns_a_sensor(problem, &answer.fitted.model);
-    let from_nothing = match turns || from_answer.as_ref().is_some_and(is_all) {
+    let from_nothing = match is_all || turns_a_sensor(problem, &answer.fitted.model) {
         true => None,
         false => explained(&Given::default(), noise),
     };
     let none = is_bare && from_nothing.as_ref().is_some_and(|found| found.causes.is_empty());
-    let found = [from_nothing, from_answer]
-        .into_iter()
-        .flatten()
-        .filter(|found| none || is_better(found))
-        .max_by(|a, b| a.criterion().total_cmp(&b.criterion()))?;
-    let mut answer = finished(prepared, &known, (&base, &found))?;
-    answer.dependence = depends(prepared, (&base, &found), &answer)?;
+    let ends = from_nothing.map(|found| (found, None)).into_iter();
+    let (found, gone_on) = ends
+        .chain(from_answer.map(|found| (found, gone_on)))
+        .filter(|(found, _)| none || is_better(found))
+        .max_by(|(a, _), (b, _)| a.criterion().total_cmp(&b.criterion()))?;
+    let answer = gone_on.or_else(|| concluded(&found))?;
     if none && answer.dependence > DEPENDS {
         return None;
     }
