@@ -15,7 +15,6 @@ use nalgebra::DMatrix;
 
 use super::error::LikelihoodError;
 use super::follow::Wanted;
-use super::memory::is_of_a_path;
 use super::model::NoiseModel;
 use super::noise::Noise;
 use super::predictor::Predictor;
@@ -115,7 +114,6 @@ impl Predictor {
     /// [`LikelihoodError::Diverges`] if the very first sample is not finite.
     pub fn ahead(&self, noise: &Noise, horizon: usize) -> Result<Vec<Vec<f64>>, LikelihoodError> {
         let plan = &self.model.plan;
-        let remembers = plan.slots.iter().any(|slot| is_of_a_path(slot.card.mechanism));
         let diverges = LikelihoodError::Diverges { sample: 0, time: 0.0 };
         let run = self.run(&self.model, noise, Wanted::default())?;
         let pass = Pass::of(&run.path, noise, false);
@@ -137,15 +135,8 @@ impl Predictor {
             for k in segment.start..segment.end.saturating_sub(horizon) {
                 let updated = &path.states[k * n..][..n];
                 let mut x = updated.to_vec();
-                // what a path remembers is gone back to, and observes the sample as the filter did
-                let before = remembers.then(|| {
-                    let both = updated.iter().zip(&path.jump[k * n..]);
-                    (plant.memory(), both.map(|(x, jump)| x - jump).collect::<Vec<f64>>())
-                });
-                if let Some((_, expected)) = &before {
-                    plant.place(expected);
-                    plant.observe(k, &mut y, &mut c, &mut []);
-                }
+                // what a path remembers is gone back to
+                let before = plant.remembers().then(|| plant.memory());
                 // what enters, each part as one sample ahead and faded from there
                 let entering = |i: i32, force: &mut [f64]| {
                     force.fill(0.0);
@@ -157,10 +148,7 @@ impl Predictor {
                 force.copy_from_slice(&path.force[k * nf..][..nf]);
                 for i in 0..horizon {
                     plant.place(&x);
-                    // a path takes a sample once
-                    if i > 0 || !remembers {
-                        plant.observe(k + i, &mut y, &mut c, &mut []);
-                    }
+                    plant.observe(k + i, &mut y, &mut c, &mut []);
                     plant.advance(k + i, &force, &mut next, &mut to);
                     x.copy_from_slice(&next);
                     entering(i as i32 + 1, &mut force);
@@ -176,11 +164,10 @@ impl Predictor {
                 for (series, y) in ahead.iter_mut().zip(&y) {
                     series[k + horizon] = *y;
                 }
-                if let Some((memory, expected)) = &before {
+                if let Some(memory) = &before {
                     plant.recall(memory);
-                    plant.place(expected);
-                    plant.observe(k, &mut y, &mut c, &mut []);
                     plant.place(updated);
+                    plant.observe(k, &mut y, &mut c, &mut []);
                     let force = &path.force[k * nf..][..nf];
                     plant.advance(k, force, &mut next, &mut to);
                 }

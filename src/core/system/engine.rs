@@ -1,6 +1,7 @@
 //! The simulation: groups of lanes, each with its own effects, through one law.
 
 mod jacobian;
+mod passed;
 mod program;
 mod rates;
 mod read_back;
@@ -9,6 +10,8 @@ mod replayed;
 mod simulated;
 mod tracks;
 mod transition;
+
+use std::sync::Arc;
 
 pub(crate) use recorded::record;
 
@@ -22,6 +25,7 @@ use super::lane::{Drive, Lane, Track, pack};
 use super::plan::Plan;
 use super::sampling::{Hold, Method};
 use super::wiring::EffectNumber;
+use passed::Passed;
 
 pub use jacobian::Jacobian;
 pub use transition::Transition;
@@ -91,6 +95,8 @@ struct Run<'a, R> {
     room: Vec<R>,
     k: [Vec<R>; 4],
     u: [Vec<R>; 3],
+    /// Inputs behind their paths, where those of the one lane were worked out before.
+    passed: Option<Arc<Passed>>,
     /// Inputs with what effects add, and what enters the own channels.
     u_in: Vec<R>,
     w: Vec<R>,
@@ -166,6 +172,7 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             room: zeros(n.x),
             k: [zeros(n.x), zeros(n.x), zeros(n.x), zeros(n.x)],
             u: [zeros(n.u), zeros(n.u), zeros(n.u)],
+            passed: None,
             u_in: zeros(n.u),
             w: zeros(n.w),
             no_w: zeros(n.w),
@@ -219,8 +226,9 @@ impl<'a, R: EffectNumber> Run<'a, R> {
             self.drift(self.time);
         }
         self.drive(drive, k, end, j);
-        for group in &mut self.groups {
-            group.inputs(&mut self.u, h);
+        match &self.passed {
+            Some(passed) => passed.put((k, j), &mut self.u),
+            None => self.groups.iter_mut().for_each(|group| group.inputs(&mut self.u, h)),
         }
         if j == 0 || self.fine {
             self.output(h);
@@ -250,15 +258,10 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         if base.hold == Hold::Zero && j > 0 && !self.groups.iter().any(|g| g.has_input_paths()) {
             return; // still there from the first step
         }
-        for (i, series) in drive.inputs.iter().enumerate() {
-            for (slot, at) in [0.0, 0.5, 1.0].into_iter().enumerate() {
-                let share = (j as f64 + at) / base.substeps as f64;
-                let value = match base.hold {
-                    Hold::Zero => series[k],
-                    Hold::First => series[k] + (series[next] - series[k]) * share,
-                };
+        for (i, three) in passed::recorded(drive, base, (k, end), j).enumerate() {
+            for (u, value) in self.u.iter_mut().zip(three) {
                 for pack in 0..self.packs {
-                    self.u[slot][pack * base.sizes.u + i] = R::constant(value);
+                    u[pack * base.sizes.u + i] = R::constant(value);
                 }
             }
         }

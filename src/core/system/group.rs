@@ -163,6 +163,12 @@ impl<'a, R: EffectNumber> Group<'a, R> {
         self.inputs.start();
     }
 
+    /// Goes on from within a segment: what is [`Self::kept`] is there.
+    pub fn resume(&mut self) {
+        self.outputs.start();
+        self.wirings.iter_mut().for_each(Wiring::start);
+    }
+
     pub fn has_input_paths(&self) -> bool {
         !self.inputs.is_empty()
     }
@@ -255,10 +261,9 @@ impl<'a, R: EffectNumber> Group<'a, R> {
         }
     }
 
-    /// Takes what is remembered beside states as known from now on: it carries no slopes.
-    pub fn forget_slopes(&mut self) {
-        self.outputs.forget_slopes();
-        self.wirings.iter_mut().for_each(Wiring::forget_slopes);
+    /// What depends on states and is remembered beside them as one number each: by lags of outputs and plays.
+    pub fn kept(&mut self) -> impl Iterator<Item = &mut Vec<R>> {
+        self.outputs.remembered().chain(self.wirings.iter_mut().filter_map(Wiring::remembered))
     }
 
     /// Every entry of the source table, pack by pack.

@@ -65,15 +65,6 @@ impl<R: EffectNumber> Memory<R> {
             Self::None | Self::Delay(_) => {}
         }
     }
-
-    /// Takes what it remembers as known from now on; a delay line carries no slopes.
-    pub fn forget_slopes(&mut self) {
-        match self {
-            Self::Lag(lag) => lag.forget_slopes(),
-            Self::Play(play) => play.forget_slopes(),
-            Self::None | Self::Delay(_) => {}
-        }
-    }
 }
 
 /// The filters and curves in the paths of the inputs.

@@ -59,16 +59,21 @@ impl<R: EffectNumber> OutputPaths<R> {
         self.entries.is_empty()
     }
 
+    /// Whether anything is on its way in them.
+    pub fn has_delays(&self) -> bool {
+        self.entries.iter().any(|entry| matches!(entry.memory, Memory::Delay(_)))
+    }
+
     pub fn restart(&mut self) {
         for entry in &mut self.entries {
             entry.memory.restart();
         }
     }
 
-    /// Takes what the paths remember as known from now on.
-    pub fn forget_slopes(&mut self) {
+    /// Takes what its filters remember as that of a step before.
+    pub fn start(&mut self) {
         for entry in &mut self.entries {
-            entry.memory.forget_slopes();
+            entry.memory.start();
         }
     }
 

@@ -9,15 +9,6 @@ use crate::model::LaneNumber;
 /// Values of a path at the start, middle and end of one integration step.
 pub type Three<R> = [R; 3];
 
-/// The same number without slopes, where it carries any.
-fn bare<R: LaneNumber>(from: R) -> R {
-    let mut to = R::constant(0.0);
-    for lane in 0..R::LANES {
-        to.set_lane(lane, from.lane(lane));
-    }
-    to
-}
-
 /// y' = (u - y) / tau, solved exactly for an input that is constant or linear over a step.
 #[derive(Debug, Clone)]
 pub struct LagState<R> {
@@ -37,11 +28,6 @@ impl<R: LaneNumber> LagState<R> {
     /// Call after the first step of a segment.
     pub fn start(&mut self) {
         self.started = true;
-    }
-
-    /// Takes what it remembers as known from now on.
-    pub fn forget_slopes(&mut self) {
-        self.value.iter_mut().for_each(|value| *value = bare(*value));
     }
 
     /// Advances over one step of length `h`; a time constant of 0 passes everything
@@ -185,11 +171,6 @@ impl<R: LaneNumber> PlayState<R> {
     /// Call after the first step of a segment.
     pub fn start(&mut self) {
         self.started = true;
-    }
-
-    /// Takes what it remembers as known from now on.
-    pub fn forget_slopes(&mut self) {
-        self.value.iter_mut().for_each(|value| *value = bare(*value));
     }
 
     /// The answer at a trial value, without moving.

@@ -324,6 +324,13 @@ impl<R: EffectNumber> Wiring<R> {
         }
     }
 
+    /// Takes what it remembers as that of a step before.
+    pub fn start(&mut self) {
+        if let Some(play) = &mut self.play {
+            play.start();
+        }
+    }
+
     /// What it remembers beside its states.
     pub fn remembered(&mut self) -> Option<&mut Vec<R>> {
         self.play.as_mut().map(|play| &mut play.value)
@@ -337,13 +344,6 @@ impl<R: EffectNumber> Wiring<R> {
                 play.advance(pack, self.effect_values[pack], self.coordinates[pack * seen]);
             }
             play.start();
-        }
-    }
-
-    /// Takes what it remembers beside its states as known from now on.
-    pub fn forget_slopes(&mut self) {
-        if let Some(play) = &mut self.play {
-            play.forget_slopes();
         }
     }
 }

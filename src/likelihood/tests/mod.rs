@@ -12,6 +12,7 @@ mod missing;
 mod needed_noise;
 mod places;
 mod plants;
+mod remembering;
 mod smoother;
 mod stationary;
 mod steady;

@@ -22,8 +22,8 @@ pub(super) struct Program {
 }
 
 impl Program {
-    /// Some results of a tape along so many directions, all of which are there or none; `None` where it is
-    /// known only in a run from its start, or too large.
+    /// Some results of a tape along so many directions, all of which are there or none; `None` where a delay
+    /// line is among it, or it is too large.
     pub fn of(tape: &Tape, results: &[Node], directions: usize, sizes: Sizes) -> Option<Self> {
         let nodes: Vec<Option<Node>> = results.iter().copied().map(Some).collect();
         let forward = Forward::of(tape, &nodes, directions)?;
@@ -33,8 +33,7 @@ impl Program {
             Leaf::Constant(_) => None,
         });
         let given: Vec<(Given, usize)> = given.collect();
-        let starts = given.iter().any(|(given, _)| *given == Given::Started);
-        if starts || forward.registers() > REGISTERS {
+        if forward.registers() > REGISTERS {
             return None;
         }
         let mut program = Self { forward, given, sizes };

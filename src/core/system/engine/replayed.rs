@@ -5,13 +5,18 @@
 //! stage. Values and slopes are the same: what is recorded is the simulation itself.
 //! Source: Griewank and Walther, Evaluating Derivatives, 2nd ed., 2008, sections 3.1 and 6.1.
 
+use std::sync::Arc;
+
+use super::super::group::Group;
 use super::super::lane::{Drive, Lane};
 use super::super::plan::Plan;
+use super::super::wiring::Wiring;
 use super::jacobian::Jacobian;
+use super::passed::Passed;
 use super::program::{Program, Sizes};
 use super::{Run, recorded};
 use crate::model::Law;
-use crate::real::{Given, Node, Tape, Trace};
+use crate::real::{Given, Node, Real, Tape, Trace};
 
 /// Directions up to which a program is replayed: beyond them its slopes outgrow the processor's cache.
 const MOST: usize = 64;
@@ -41,30 +46,35 @@ pub(super) struct Replayed<'a> {
     onward: Vec<(usize, usize)>,
     x: Vec<f64>,
     clock: f64,
+    /// Inputs behind their paths, where these remember anything.
+    passed: Option<Arc<Passed>>,
+    begin: usize,
     end: usize,
     sample: usize,
 }
 
 impl<'a> Replayed<'a> {
-    /// Records the transition of a lane; `None` where something is remembered beside states, or the program
-    /// is so large that a simulation is faster.
+    /// Records the transition of a lane; `None` where an output is delayed, or the program is so large that a simulation is faster.
     pub fn new(
         law: &dyn Law,
         (plan, drive): (&'a Plan, &'a Drive),
-        lane: &Lane,
+        (lane, passed): (&Lane, Option<Arc<Passed>>),
         wants_parameters: bool,
     ) -> Option<Self> {
         let n = plan.sizes;
-        let (states, forces) = (n.x + plan.states, n.w + n.u);
+        let forces = n.w + n.u;
         let read = if law.fed_back() { n.y } else { 0 };
         let parameters = if wants_parameters { n.theta } else { 0 };
-        let directions = states + forces + read + parameters;
         // an exact step is worked out before the run, from parameters without slopes
-        if directions > MOST || plan.linear && wants_parameters {
+        if n.x + plan.states + forces + read + parameters > MOST || plan.linear && wants_parameters
+        {
             return None;
         }
-        let (asked, tape) = Tape::record(|| asked(law, plan, lane, parameters));
+        let is_passed = passed.is_some();
+        let (asked, tape) = Tape::record(|| asked(law, (plan, lane), parameters, is_passed));
         let asked = asked?;
+        let states = asked.next.len();
+        let directions = states + forces + read + parameters;
         let sizes = Sizes { states, forces: forces + read, parameters };
         let program = |results: &[Node], directions| Program::of(&tape, results, directions, sizes);
         let next = program(&asked.next, directions)?;
@@ -83,6 +93,8 @@ impl<'a> Replayed<'a> {
             parameters,
             x: vec![0.0; states],
             clock: 0.0,
+            passed,
+            begin: 0,
             end: 0,
             sample: 0,
         };
@@ -97,7 +109,13 @@ impl<'a> Replayed<'a> {
 
     pub fn start(&mut self, segment: usize) {
         self.clock = self.drive.clocks.get(segment).copied().unwrap_or(0.0);
-        self.end = self.drive.segments[segment].end;
+        let samples = &self.drive.segments[segment];
+        (self.begin, self.end) = (samples.start, samples.end);
+    }
+
+    /// States of the model and of its effects, and what lags of outputs and plays remember.
+    pub fn states(&self) -> usize {
+        self.states
     }
 
     pub fn place(&mut self, x: &[f64]) {
@@ -109,7 +127,8 @@ impl<'a> Replayed<'a> {
         let (plan, drive) = (self.plan, self.drive);
         let next = if k + 1 < self.end { k + 1 } else { k };
         let time = self.clock + (k as f64 * plan.sampling_time + step as f64 * plan.step());
-        Now { drive, sample: k, next, time, step }
+        let started = k > self.begin || step > 0;
+        Now { drive, passed: self.passed.clone(), sample: k, next, time, step, started }
     }
 
     pub fn observe(&mut self, k: usize, y: &mut [f64], c: &mut [f64], theta: &mut [f64]) {
@@ -175,20 +194,34 @@ impl<'a> Replayed<'a> {
 /// What a step is given from the record.
 struct Now<'a> {
     drive: &'a Drive,
+    passed: Option<Arc<Passed>>,
     sample: usize,
     next: usize,
     time: f64,
     step: usize,
+    started: bool,
 }
 
 impl Now<'_> {
     fn value(&self, given: Given) -> Option<f64> {
         match given {
-            Given::Input(i) => Some(self.drive.inputs[i as usize][self.sample]),
+            Given::Input(i) => Some(self.input(i as usize)),
             Given::Next(i) => Some(self.drive.inputs[i as usize][self.next]),
             Given::Time => Some(self.time),
             Given::Substep => Some(self.step as f64),
+            Given::Started => Some(if self.started { 1.0 } else { 0.0 }),
             _ => None,
+        }
+    }
+
+    /// The recorded inputs, then those behind their paths at the start, middle and end of a step.
+    fn input(&self, i: usize) -> f64 {
+        let inputs = self.drive.inputs.len();
+        match (&self.passed, i.checked_sub(inputs)) {
+            (Some(passed), Some(i)) => {
+                passed.value((self.sample, self.step), i / inputs, i % inputs)
+            }
+            _ => self.drive.inputs[i][self.sample],
         }
     }
 }
@@ -202,10 +235,15 @@ fn state(given: Given, x: &[f64]) -> Option<f64> {
 }
 
 /// Writes down a step: the first `parameters` of the model are given, then what enters own channels and inputs.
-fn asked(law: &dyn Law, plan: &Plan, lane: &Lane, parameters: usize) -> Option<Asked> {
+fn asked(
+    law: &dyn Law,
+    (plan, lane): (&Plan, &Lane),
+    parameters: usize,
+    is_passed: bool,
+) -> Option<Asked> {
     let groups = [(plan, std::slice::from_ref(lane))];
     let mut run = Run::<Trace>::new(law, &groups)?;
-    let (states, n) = (plan.sizes.x + plan.states, plan.sizes);
+    let n = plan.sizes;
     (run.inside, run.into_inputs) = (true, true);
     run.groups.iter_mut().for_each(|group| group.inside = true);
     for (i, value) in run.theta.iter_mut().enumerate().take(parameters) {
@@ -218,16 +256,26 @@ fn asked(law: &dyn Law, plan: &Plan, lane: &Lane, parameters: usize) -> Option<A
     let into = [0..n.w, n.w..forces, forces..forces + run.read.len()];
     run.noise = Some(into.map(|each| each.map(force).collect()));
     run.start(&groups, 0);
-    if run.give_states().len() != states {
-        return None;
+    for (i, state) in states(&mut run).into_iter().enumerate() {
+        *state = Trace::given(Given::State(i as u32), state.value());
     }
     recorded::give_inputs(&mut run, plan);
     let h = plan.step();
     run.drift(0.0);
-    for group in &mut run.groups {
-        group.inputs(&mut run.u, h);
+    match is_passed {
+        true => give_passed(&mut run.u, n.u),
+        false => run.groups.iter_mut().for_each(|group| group.inputs(&mut run.u, h)),
     }
+    let before: Vec<Trace> = run.groups[0].outputs.remembered().flatten().map(|v| *v).collect();
     run.output(h);
+    if !run.fine {
+        // an output is read once a sample
+        let kept = run.groups[0].outputs.remembered().flatten();
+        for (value, before) in kept.zip(before) {
+            let begun = Trace::given(Given::Substep, 0.0);
+            *value = begun.where_positive(before, *value);
+        }
+    }
     let roots = |values: &[Trace]| values.iter().map(|&value| recorded::root(value)).collect();
     let outputs = roots(&run.y);
     let now = [&run.theta_now, &run.derived, &run.x, &run.u[0]];
@@ -235,6 +283,22 @@ fn asked(law: &dyn Law, plan: &Plan, lane: &Lane, parameters: usize) -> Option<A
     let at = group.instant(run.law, now, 0.0);
     let sources = roots(&group.table(&at));
     run.advance(h);
-    let next: Vec<Trace> = run.remembered().into_iter().map(|value| *value).collect();
+    let next: Vec<Trace> = states(&mut run).into_iter().map(|value| *value).collect();
     Some(Asked { outputs, sources, next: roots(&next), theta })
+}
+
+/// States of the model and of its effects, and what lags of outputs and plays remember.
+fn states<'b>(run: &'b mut Run<'_, Trace>) -> Vec<&'b mut Trace> {
+    let Group { s, outputs, wirings, .. } = &mut run.groups[0];
+    let plays = wirings.iter_mut().filter_map(Wiring::remembered);
+    run.x.iter_mut().chain(s).chain(outputs.remembered().chain(plays).flatten()).collect()
+}
+
+/// Puts given inputs behind their paths in the place of those of a run.
+fn give_passed(u: &mut [Vec<Trace>; 3], inputs: usize) {
+    for (slot, u) in u.iter_mut().enumerate() {
+        for (i, value) in u.iter_mut().enumerate() {
+            *value = Trace::given(Given::Input((inputs * (slot + 1) + i) as u32), 0.0);
+        }
+    }
 }

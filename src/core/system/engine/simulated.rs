@@ -1,7 +1,10 @@
 //! A transition by the simulation itself, with dual numbers in the place of plain ones.
 //!
 //! One register of dual numbers carries 32 directions, so that a whole Jacobian costs one simulation.
-//! What paths of outputs and play remember beside states (lag, delay) is taken as known: it has no columns.
+//! What lags in the paths of outputs and plays remember are states too, after those of the effects: what is
+//! measured tells about them. What is on its way in a delay line is taken as known.
+
+use std::sync::Arc;
 
 use super::super::lane::{Drive, Lane};
 use super::super::outputs::OutputPaths;
@@ -9,6 +12,7 @@ use super::super::plan::Plan;
 use super::super::remembered::Remembered;
 use super::Run;
 use super::jacobian::Jacobian;
+use super::passed::Passed;
 use crate::model::{Ask, Block, DIRECTIONS, Dual64, LaneNumber, Law};
 use crate::real::{F64x8, Real};
 
@@ -19,12 +23,17 @@ const IN_PACK: usize = DIRECTIONS * F64x8::LANES;
 pub(super) struct Simulated<'a> {
     run: Run<'a, Dual64>,
     drive: &'a Drive,
+    begin: usize,
     end: usize,
     packs: usize,
     /// Zero with the slopes of the state that it stands for, pack by pack.
     x: Vec<Dual64>,
     s: Vec<Dual64>,
-    /// What the paths of outputs remembered before these were read, where the law reads them back.
+    m: Vec<Dual64>,
+    /// How many numbers lags of outputs and plays remember, and where a filter has them.
+    kept: usize,
+    kept_now: Vec<f64>,
+    /// What the paths of outputs remembered before these were read, where they are read again from other states.
     before: Option<OutputPaths<Dual64>>,
     parameters: bool,
 }
@@ -41,26 +50,33 @@ impl<'a> Simulated<'a> {
     pub fn new(
         law: &'a dyn Law,
         (plan, drive): (&'a Plan, &'a Drive),
-        lane: &Lane,
+        (lane, passed): (&Lane, Option<Arc<Passed>>),
         parameters: bool,
     ) -> Option<Self> {
         let n = plan.sizes;
         let read = if law.fed_back() { n.y } else { 0 };
-        let (states, entering) = (n.x + plan.states, n.w + n.u + read);
+        let kept = Run::<Dual64>::new(law, &[(plan, std::slice::from_ref(lane))])?.groups[0]
+            .kept()
+            .count();
+        let (states, entering) = (n.x + plan.states + kept, n.w + n.u + read);
         let directions = states + entering + if parameters { n.theta } else { 0 };
         let packs = directions.div_ceil(IN_PACK).max(1);
         // a lane for every place: every one carries other directions of the same run
         let lanes = vec![lane.clone(); packs * F64x8::LANES];
         let mut run = Run::<Dual64>::new(law, &[(plan, &lanes)])?;
-        (run.inside, run.into_inputs) = (true, true);
+        (run.inside, run.into_inputs, run.passed) = (true, true, passed);
         let blank = |count: usize| vec![Dual64::constant(0.0); packs * count];
         let mut noise = [blank(n.w), blank(n.u), blank(read)];
         let mut transition = Self {
             drive,
+            begin: 0,
             end: 0,
             packs,
             x: blank(n.x),
             s: blank(plan.states),
+            m: blank(kept),
+            kept,
+            kept_now: vec![0.0; kept],
             before: None,
             parameters,
             run: {
@@ -71,6 +87,7 @@ impl<'a> Simulated<'a> {
         let mut first = 0;
         sloped(&mut transition.x, n.x, &mut first);
         sloped(&mut transition.s, plan.states, &mut first);
+        sloped(&mut transition.m, kept, &mut first);
         sloped(&mut noise[0], n.w, &mut first);
         sloped(&mut noise[1], n.u, &mut first);
         sloped(&mut noise[2], read, &mut first);
@@ -103,9 +120,9 @@ impl<'a> Simulated<'a> {
         }
     }
 
-    /// States of the model and of its effects.
+    /// States of the model and of its effects, and what lags of outputs and plays remember.
     pub fn states(&self) -> usize {
-        self.run.base.sizes.x + self.run.base.states
+        self.run.base.sizes.x + self.run.base.states + self.kept
     }
 
     /// Own channels and inputs.
@@ -120,9 +137,15 @@ impl<'a> Simulated<'a> {
 
     pub fn start(&mut self, segment: usize) {
         self.run.clock = self.drive.clocks.get(segment).copied().unwrap_or(0.0);
-        self.end = self.drive.segments[segment].end;
+        let samples = &self.drive.segments[segment];
+        (self.begin, self.end) = (samples.start, samples.end);
         self.run.groups.iter_mut().for_each(super::Group::restart);
         self.run.first = true;
+    }
+
+    /// Whether anything is remembered beside states.
+    pub fn remembers(&self) -> bool {
+        self.run.groups[0].outputs.has_delays()
     }
 
     /// What it remembers beside states.
@@ -137,9 +160,21 @@ impl<'a> Simulated<'a> {
     }
 
     pub fn place(&mut self, x: &[f64]) {
-        let nx = self.run.base.sizes.x;
+        let (nx, ns) = (self.run.base.sizes.x, self.run.base.states);
         put(&mut self.run.x, &self.x, &x[..nx]);
-        put(&mut self.run.groups[0].s, &self.s, &x[nx..]);
+        put(&mut self.run.groups[0].s, &self.s, &x[nx..][..ns]);
+        self.kept_now.copy_from_slice(&x[nx + ns..]);
+        self.place_kept();
+    }
+
+    /// Puts what is remembered where the filter has it.
+    fn place_kept(&mut self) {
+        for (i, all) in self.run.groups[0].kept().enumerate() {
+            for (to, with) in all.iter_mut().zip(self.m.iter().skip(i).step_by(self.kept)) {
+                let value = F64x8::constant(self.kept_now[i]);
+                *to = Dual64 { value, slope: with.slope };
+            }
+        }
     }
 
     pub fn observe(&mut self, k: usize, y: &mut [f64], c: &mut [f64], theta: &mut [f64]) {
@@ -148,7 +183,13 @@ impl<'a> Simulated<'a> {
         for to in self.run.noise.iter_mut().flatten().flatten() {
             to.value = F64x8::constant(0.0);
         }
-        self.before = (!self.run.read.is_empty()).then(|| self.run.groups[0].outputs.clone());
+        let is_read_again = self.kept > 0 || self.remembers() || !self.run.read.is_empty();
+        if self.run.first && k > self.begin {
+            // what was remembered before is part of the states
+            self.run.first = false;
+            self.run.groups[0].resume();
+        }
+        self.before = is_read_again.then(|| self.run.groups[0].outputs.clone());
         self.run.begin(drive, k, self.end, 0);
         let (n, ny) = (self.states(), self.run.base.sizes.y);
         for o in 0..ny {
@@ -190,9 +231,10 @@ impl<'a> Simulated<'a> {
                 }
             }
         }
-        // what is fed back is read where the states are now
+        // what is fed back or remembered is read where the states are now
         if let Some(before) = self.before.take() {
             self.run.groups[0].outputs = before;
+            self.place_kept();
             self.run.output(base.step());
         }
         self.run.finish();
@@ -200,13 +242,16 @@ impl<'a> Simulated<'a> {
             self.run.begin(drive, k, self.end, j);
             self.run.finish();
         }
-        self.run.groups[0].forget_slopes();
         let (forces, entering) = (self.forces(), self.entering());
         let (read, nt) = (entering - forces, to.theta.len() / n.max(1));
+        let kept: Vec<Vec<Dual64>> = self.run.groups[0].kept().map(|all| all.clone()).collect();
         for i in 0..n {
-            let (all, at) = match i < nx {
-                true => (&self.run.x, (nx, i)),
-                false => (&self.run.groups[0].s, (base.states, i - nx)),
+            let (all, at) = match i.checked_sub(nx) {
+                None => (&self.run.x, (nx, i)),
+                Some(i) => match i.checked_sub(base.states) {
+                    None => (&self.run.groups[0].s, (base.states, i)),
+                    Some(i) => (&kept[i], (1, 0)),
+                },
             };
             x[i] = all[at.1].lane(0);
             slopes(all, at, 0, &mut to.a[i * n..][..n]);

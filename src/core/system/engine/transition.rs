@@ -4,14 +4,18 @@
 //! dF/dtheta, C = dh/dx and dh/dtheta by forward differentiation through the integrator's stages and
 //! through all effects (Griewank and Walther, "Evaluating Derivatives", 2nd ed., 2008, ch. 3).
 //!
-//! States are those of the model, then those of its effects. w enters the own channels, then the
+//! States are those of the model, then those of its effects, then what lags in the paths of outputs and plays
+//! remember. w enters the own channels, then the
 //! inputs behind whatever sits in their paths, and is held over the sample. A law that reads its outputs
 //! back has x[k+1] = F(x[k], u[k], w[k], y[k] + r) as well, with dF/dr at r = 0.
+
+use std::sync::Arc;
 
 use super::super::System;
 use super::super::lane::{Drive, Lane};
 use super::super::plan::Plan;
 use super::jacobian::Jacobian;
+use super::passed::Passed;
 use super::replayed::Replayed;
 use super::simulated::{Memory, Simulated};
 use crate::model::Law;
@@ -29,7 +33,7 @@ pub struct Transition<'a> {
     parameters: usize,
 }
 
-/// What a transition remembers beside states; what is recorded remembers nothing.
+/// What a transition remembers beside states: what is on its way in the delay lines of outputs.
 pub struct TransitionMemory(Option<Memory>);
 
 /// How a transition is worked out: by its recorded step, or by simulating it.
@@ -64,11 +68,13 @@ impl<'a> Transition<'a> {
         };
         let law = system.model.as_ref();
         let is_worth = drive.len() >= WORTH;
-        let record = || Replayed::new(law, (plan, drive), &lane, parameters);
+        let (both, passed) = ((plan, drive), Passed::of(plan, drive, &lane).map(Arc::new));
+        let record = || Replayed::new(law, both, (&lane, passed.clone()), parameters);
         let way = match is_worth.then(record).flatten() {
             Some(replayed) => Way::Replayed(Box::new(replayed)),
             None => {
-                Way::Simulated(Box::new(Simulated::new(law, (plan, drive), &lane, parameters)?))
+                let simulated = Simulated::new(law, both, (&lane, passed), parameters)?;
+                Way::Simulated(Box::new(simulated))
             }
         };
         Some(Self::of(way, (law, plan), parameters))
@@ -77,15 +83,15 @@ impl<'a> Transition<'a> {
     fn of(way: Way<'a>, (law, plan): (&dyn Law, &Plan), parameters: bool) -> Self {
         let n = plan.sizes;
         Self {
+            states: either!(&way, way => way.states()),
             way,
-            states: n.x + plan.states,
             forces: n.w + n.u,
             read: if law.fed_back() { n.y } else { 0 },
             parameters: if parameters { n.theta } else { 0 },
         }
     }
 
-    /// States of the model and of its effects.
+    /// States of the model and of its effects, and what lags of outputs and plays remember.
     pub fn states(&self) -> usize {
         self.states
     }
@@ -111,7 +117,12 @@ impl<'a> Transition<'a> {
         either!(&mut self.way, way => way.start(segment));
     }
 
-    /// What is remembered beside states (paths with a delay or a lag, play), before a sample is observed.
+    /// Whether anything is remembered beside states.
+    pub fn remembers(&self) -> bool {
+        matches!(&self.way, Way::Simulated(way) if way.remembers())
+    }
+
+    /// What is remembered beside states, before a sample is observed.
     pub fn memory(&self) -> TransitionMemory {
         TransitionMemory(match &self.way {
             Way::Replayed(_) => None,

@@ -78,10 +78,12 @@ fn compare(text: &str, parameters: bool) {
         course(of, plan.sizes.y, plan.sources.entries.len(), 12)
     };
     let both = (&plan, &drive);
-    let replayed =
-        all(Way::Replayed(Box::new(Replayed::new(law, both, &lane, parameters).unwrap())));
-    let simulated =
-        all(Way::Simulated(Box::new(Simulated::new(law, both, &lane, parameters).unwrap())));
+    let passed = || (&lane, Passed::of(&plan, &drive, &lane).map(Arc::new));
+    let replayed = Replayed::new(law, both, passed(), parameters).unwrap();
+    let simulated = Simulated::new(law, both, passed(), parameters).unwrap();
+    let replayed = all(Way::Replayed(Box::new(replayed)));
+    let simulated = all(Way::Simulated(Box::new(simulated)));
+    assert_eq!(replayed.len(), simulated.len());
     for (i, (a, b)) in replayed.iter().zip(&simulated).enumerate() {
         assert!((a - b).abs() <= 1e-12 * b.abs().max(1.0), "{i}: {a} {b}");
     }
