@@ -5,8 +5,8 @@
 //! repeat  the most probable place and its laws, given the causes before (`places.rs`)
 //!         all causes fitted together, the noise anew
 //! until nothing more is probable, fitted together with the others too (`joint.rs`)
-//! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), the pole of a slow force is
-//! chosen anew, with a constant or without (`steady.rs`), and so is the law of a place, the other causes being
+//! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), a lag or a delay moves to
+//! another instrument (`instruments.rs`), the pole of a slow force is chosen anew, with a constant or without (`steady.rs`), and so is the law of a place, the other causes being
 //! there (`joint.rs`); then more causes
 //! causes that are not needed beside the others are left out
 //! causes that held samples speak against are withdrawn; the rest fitted to all samples
@@ -52,12 +52,16 @@ impl Predictor {
         let gain = fit.merit(&now, &found) - fit.merit(&null, &[]);
         let nothing = if found.is_empty() { 1.0 } else { 1.0 / (1.0 + gain.exp()) };
         let mut first = First { nothing, sets: vec![] };
-        let mut seen = BTreeSet::new();
+        let (mut seen, mut elsewhere) = (BTreeSet::new(), vec![]);
         loop {
             (found, now) = fit.one_by_one((found, now), most, stop, &mut first)?;
             // laws that give way to each other in turn end where they were before
             let mut exchanged = || {
                 fit.exchanged(&mut found, &mut now)
+                    || fit
+                        .moved_between_instruments(&mut found, &mut now)
+                        .map(|tried| elsewhere = tried)
+                        .is_none()
                     || fit.steadied(&mut found, &mut now, most)
                     || fit.laws_anew(&mut found, &mut now) && seen.insert(now.names())
             };
@@ -67,6 +71,7 @@ impl Predictor {
         }
         // what is known is told at once to somebody who asks to stop
         if !stop() {
+            fit.note_instruments(&mut found, &elsewhere);
             fit.pruned_causes(&mut found, &mut now, &null);
         }
         let all = Self { start: fit.start.clone(), ..self.clone() };

@@ -31,6 +31,7 @@ mod found;
 mod given;
 mod held_out;
 mod hypothesis;
+mod instruments;
 mod intensities;
 mod joint;
 mod kalman;

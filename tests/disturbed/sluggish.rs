@@ -55,3 +55,47 @@ fn a_slow_actuator_is_found_beside_gusts_in_a_loop() {
         assert!(off < 4.0 * error && error < 0.1 * value, "{} +- {error}", found.value);
     }
 }
+
+/// An oven, its element before its chamber.
+const OVEN: &str = r#"
+sampling_time = 2.0
+integrator = { method = "rk4", substeps = 2 }
+[model.equations]
+inputs = [{ name = "power", unit = "W" }]
+states = [{ name = "element", unit = "K", derivative = "(power - g*(element - chamber))/1200" }, { name = "chamber", unit = "K", derivative = "(g*(element - chamber) - loss*chamber)/c" }]
+outputs = [{ name = "temperature", unit = "K", value = "chamber" }]
+parameters = [{ name = "g", value = 15.0, min = 0.0 }, { name = "c", value = 3000.0, min = 0.0 }, { name = "loss", value = 6.0, min = 0.0 }]
+channels = [{ name = "heat", unit = "W", into = [{ state = "chamber", gain = "1/c" }] }]
+"#;
+
+/// In a linear plant a lag before it does what one behind it does; what enters between the two tells.
+#[test]
+fn a_slow_sensor_is_told_from_a_slow_actuator_by_what_disturbs_the_plant() {
+    const LAG: f64 = 25.0;
+    let slow = OVEN.replace("value = \"chamber\"", "value = \"read\"").replace(
+        "states = [",
+        "states = [{ name = \"read\", unit = \"K\", derivative = \"(chamber - read)/25\" }, ",
+    );
+    for seed in [41, 42] {
+        let wanted = excitation(1800, 0.02, 10.0, seed);
+        let noise = Sizes { white: vec![150.0], measurement: vec![0.02], ..Sizes::default() };
+        let (mut sum, mut power) = (0.0, vec![]);
+        let drive = |k: usize, seen: &[f64]| {
+            let off = wanted[k] - seen[0];
+            sum += 2.0 * off;
+            power.push(40.0 * off + 0.3 * sum);
+            power[k]
+        };
+        let acted = simulate_by(&system(&slow), wanted.len(), &noise, seed + 10, drive);
+        let record = Record::new(2.0).input("power", power).unwrap();
+        let record = record.output("temperature", acted.outputs[0].values.clone()).unwrap();
+        let finding = Diagnosis::of(&system(OVEN)).run(&[record], None, &()).unwrap();
+        let named: Vec<_> =
+            finding.causes.iter().map(|cause| (&cause.effect[..], &cause.into[..])).collect();
+        assert_eq!(named, [("lag", "temperature")], "{seed}: {:?}", finding.causes);
+        let found = &finding.causes[0].parameters[0];
+        let error = found.std_error.unwrap();
+        let off = (found.value - LAG).abs();
+        assert!(off < 4.0 * error && error < 0.1 * LAG, "{seed}: {} +- {error}", found.value);
+    }
+}
