@@ -1,5 +1,6 @@
 //! The simulation: groups of lanes, each with its own effects, through one law.
 
+mod asked;
 mod jacobian;
 mod passed;
 mod program;

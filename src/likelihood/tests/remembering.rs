@@ -155,7 +155,8 @@ fn a_lag_of_a_sensor_is_as_probable_in_its_path_as_among_the_states() {
     }
     let record = Record::new(STEP).input("u", u).unwrap().output("y", y).unwrap();
     let of = |lag_is_a_state| {
-        let predictor = Predictor::new(&slow(lag_is_a_state), &[record.clone()]).unwrap();
+        let predictor =
+            Predictor::new(&slow(lag_is_a_state), std::slice::from_ref(&record)).unwrap();
         let heat = predictor.forces().iter().position(|force| force.0 == "heat").unwrap();
         let mut noise = predictor.white(vec![4e-6]);
         noise.set(Component::White(heat), 4.0);
