@@ -21,7 +21,7 @@ use nalgebra::DMatrix;
 
 use super::error::LikelihoodError;
 use super::explanation::{Explanation, NamedCause};
-use super::found::{First, Found, dealt, joined};
+use super::found::{First, Found, dealt, joined, laws};
 use super::given::{Begun, Given};
 use super::held_out::refutes;
 use super::hypothesis::Hypothesis;
@@ -33,7 +33,7 @@ use super::tangent::Site;
 use super::weigh::{Weighed, plainest};
 
 impl Predictor {
-    /// What explains the records, at most `most` causes, from causes that are given on; `held` are samples
+    /// What explains the records, at most `most` causes beside parameters that move, from causes that are given on; `held` are samples
     /// that nothing is fitted to until causes are chosen, and that may refute them. `noise` is that of the
     /// model with the given causes alone, where it is known. `stop` is asked between causes.
     ///
@@ -69,6 +69,7 @@ impl Predictor {
                 break;
             }
         }
+        let full = laws(&found) >= most;
         // what is known is told at once to somebody who asks to stop
         if !stop() {
             fit.note_instruments(&mut found, &elsewhere);
@@ -82,7 +83,7 @@ impl Predictor {
             withdrawn.push(found.remove(worst.0));
             now = worst.1;
         }
-        all.finished((found, withdrawn), now, first)
+        Ok(Explanation { full, ..all.finished((found, withdrawn), now, first)? })
     }
 
     /// Causes one after the other, beside those that are known.
@@ -93,7 +94,7 @@ impl Predictor {
         stop: &dyn Fn() -> bool,
         first: &mut First,
     ) -> Result<(Vec<Found>, Hypothesis), LikelihoodError> {
-        while found.len() < most && !stop() {
+        while laws(&found) < most && !stop() {
             let survey = self.holding(&now)?.survey(&now.noise, None, stop)?;
             if found.is_empty() {
                 *first = First::of(&survey);
@@ -152,10 +153,11 @@ impl Predictor {
         Ok(here)
     }
 
-    /// Criterion of a hypothesis, less what its causes were chosen from.
+    /// Criterion of a hypothesis, how probable its parameters are beforehand, less what its causes were chosen
+    /// from.
     pub(crate) fn merit(&self, of: &Hypothesis, found: &[Found]) -> f64 {
         let choice: f64 = found.iter().map(|cause| cause.choice).sum();
-        of.criterion(self.observed()) - choice
+        of.criterion(self.observed()) + self.log_prior(of) - choice
     }
 
     /// The hypothesis without one of its causes, fitted anew.
@@ -183,11 +185,10 @@ impl Predictor {
         loop {
             let rests: Vec<Option<Hypothesis>> =
                 (0..found.len()).map(|i| self.less(found, now, null, i)).collect();
-            let samples = self.observed();
+            let value = |of: &Hypothesis| of.criterion(self.observed()) + self.log_prior(of);
             for (cause, rest) in found.iter_mut().zip(&rests) {
                 if let Some(rest) = rest {
-                    let gain = now.criterion(samples) - rest.criterion(samples);
-                    cause.log_odds = gain - cause.choice;
+                    cause.log_odds = value(now) - value(rest) - cause.choice;
                 }
             }
             let least = (0..found.len())
@@ -243,7 +244,7 @@ impl Predictor {
         let nx = self.start.p0.len();
         let begun = starts(&run.path, &smoothed.mean, &Layout::of(&run.path, &now.noise));
         let mut covariances = covariances.into_iter();
-        let choice = found.iter().map(|cause| cause.choice).sum();
+        let choice = found.iter().map(|cause| cause.choice).sum::<f64>() - self.log_prior(&now);
         let causes = found.into_iter().map(|cause| {
             let own = covariances.by_ref().take(cause.parts.len()).collect();
             self.said(cause, &now.theta, own)
@@ -260,6 +261,7 @@ impl Predictor {
             log_likelihood: now.log_likelihood,
             choice,
             samples: self.observed() as usize,
+            full: false,
             starts: begun.into_iter().map(|x| x[..nx].to_vec()).collect(),
             noise: now.noise,
         })

@@ -57,10 +57,12 @@ pub struct Explanation {
     pub log_likelihood: f64,
     /// Numbers that were fitted: of laws, parameters and noise.
     pub numbers: usize,
-    /// ln of what all causes were chosen from.
+    /// ln of what all causes were chosen from, and of how improbable the values of parameters are beforehand.
     pub choice: f64,
     /// Measured outputs, each sample of each counted.
     pub samples: usize,
+    /// Whether the search ended with as many laws as were asked for.
+    pub full: bool,
     /// Most likely states at the first sample of every segment.
     pub starts: Vec<Vec<f64>>,
 }

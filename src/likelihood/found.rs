@@ -50,6 +50,11 @@ impl Found {
     }
 }
 
+/// How many causes are laws: all but parameters that have another value.
+pub(super) fn laws(found: &[Found]) -> usize {
+    found.iter().filter(|cause| !matches!(cause.place.0, Site::Parameter(_))).count()
+}
+
 /// What is thought before anything is named.
 pub(super) struct First {
     /// Probability that nothing is missing.

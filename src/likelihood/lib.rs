@@ -49,6 +49,7 @@ mod parametrised;
 mod path;
 mod places;
 mod predictor;
+mod prior;
 mod racing;
 mod ranked;
 mod remembering;

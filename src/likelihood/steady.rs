@@ -13,7 +13,7 @@
 
 use rayon::prelude::*;
 
-use super::found::Found;
+use super::found::{Found, laws};
 use super::hypothesis::{Hypothesis, Part};
 use super::laws::offsets;
 use super::noise::Noise;
@@ -72,7 +72,7 @@ impl Predictor {
         let site = Site::Force(c);
         let is_constant =
             |part: &Part| matches!(part, Part::Law { site: at, source: None, .. } if *at == site);
-        if found.len() >= most || found.iter().flat_map(|cause| &cause.parts).any(is_constant) {
+        if laws(found) >= most || found.iter().flat_map(|cause| &cause.parts).any(is_constant) {
             return vec![];
         }
         let laws = offsets().into_iter().filter(|law| self.scope.effect(law.name));

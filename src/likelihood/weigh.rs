@@ -1,6 +1,7 @@
 //! Sets of laws against nothing, and their probabilities.
 //!
-//! ln odds = log L - (numbers) / 2 ln(samples) - ln(places) - ln(sets of that size), less that of nothing;
+//! ln odds = log L - (numbers) / 2 ln(samples) - ln(places) - ln(sets of that size), less that of nothing, and
+//! with the prior of a parameter (`prior.rs`);
 //! P(set) = odds / (1 + sum of all odds).
 //! Sources: Schwarz, Annals of Statistics 6, 1978; Chen and Chen, Biometrika 95, 2008.
 
@@ -64,7 +65,8 @@ impl Predictor {
                 let spot = &spots[spot];
                 let sets = log_choose(count(spot).max(1.0), hypothesis.parts.len() as f64);
                 let choice = (spots.len() as f64).ln() + sets;
-                let log_odds = hypothesis.criterion(samples) - base - choice;
+                let prior = self.log_prior(&hypothesis);
+                let log_odds = hypothesis.criterion(samples) + prior - base - choice;
                 Weighed { hypothesis, place: spot.place(), choice, log_odds, probability: 0.0 }
             })
             .collect();

@@ -24,7 +24,7 @@ use super::exact::Exact;
 use super::group::Group;
 use super::lane::{Drive, Lane, Track, pack};
 use super::plan::Plan;
-use super::sampling::{Hold, Method};
+use super::sampling::Method;
 use super::wiring::EffectNumber;
 use passed::Passed;
 
@@ -241,31 +241,6 @@ impl<'a, R: EffectNumber> Run<'a, R> {
         self.advance(self.base.step());
         self.first = false;
         self.groups.iter_mut().for_each(Group::started);
-    }
-
-    /// Inputs at the start, middle and end of step `j`.
-    fn drive(&mut self, drive: &Drive, k: usize, end: usize, j: usize) {
-        let base = self.base;
-        let next = if k + 1 < end { k + 1 } else { k };
-        if self.ramped {
-            for pack in 0..self.packs {
-                let to = &mut self.ramp[pack * base.sizes.w..][..base.sizes.w];
-                for (to, series) in to.iter_mut().zip(&drive.inputs) {
-                    *to = R::constant(series[next] - series[k]);
-                }
-            }
-            self.w.copy_from_slice(&self.ramp);
-        }
-        if base.hold == Hold::Zero && j > 0 && !self.groups.iter().any(|g| g.has_input_paths()) {
-            return; // still there from the first step
-        }
-        for (i, three) in passed::recorded(drive, base, (k, end), j).enumerate() {
-            for (u, value) in self.u.iter_mut().zip(three) {
-                for pack in 0..self.packs {
-                    u[pack * base.sizes.u + i] = R::constant(value);
-                }
-            }
-        }
     }
 
     /// Parameters at a given time, and what the law derives from them.

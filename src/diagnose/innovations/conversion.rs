@@ -76,7 +76,7 @@ pub(super) fn finished(
             first: None,
             left_out: None,
             spikes: problem.spikes(),
-            full: false,
+            full: found.full,
             nothing: found.nothing,
             suspected: of_library(known, &found.suspected),
             off: Off::default(),

@@ -165,7 +165,7 @@ fn by_innovations(
         NoiseModel::FreeRun(_) => None,
     });
     let known = library(problem, &prepared.nominal, &prepared.start, vec![], allowed, &());
-    let of_answer = rivals.best() - taken(&base, answer, Choices::of(&known).laws);
+    let of_answer = rivals.best() - taken(problem, &base, answer, Choices::of(&known).laws);
     let explained = |given: &Given, noise: Option<&Noise>| {
         base.explain((given, most), &held, noise, &|| watch.stopped()).ok()
     };
@@ -250,7 +250,7 @@ fn count_moved(answer: &Finished) -> usize {
 
 /// What the causes of an answer take: their numbers, and what they were chosen from: a place among all, and
 /// a law among `laws` of its place, as an explanation by innovations pays for it.
-fn taken(of: &Predictor, answer: &Finished, laws: usize) -> f64 {
+fn taken(problem: &Problem<'_>, of: &Predictor, answer: &Finished, laws: usize) -> f64 {
     let model = &answer.fitted.model;
     let numbers: usize = model.added.iter().map(|added| added.cause.unknowns()).sum();
     let numbers = (numbers + answer.moved.len()) as f64;
@@ -259,7 +259,9 @@ fn taken(of: &Predictor, answer: &Finished, laws: usize) -> f64 {
     let is_law = |added: &&Added| !matches!(added.cause.wire, Wire::Parameter(_));
     let places = ((0..added.len()).filter(is_new).count() + count_moved(answer)) as f64;
     let chosen = added.iter().filter(is_law).count() as f64;
+    let moved = Given::new(vec![], &problem.baseline().theta, &model.parameters());
     0.5 * numbers * (of.samples() as f64).ln()
         + places * (of.places_count() as f64).ln()
         + chosen * (laws as f64).ln()
+        - of.log_prior_of(&moved)
 }

@@ -11,6 +11,7 @@ use super::super::lane::{Drive, Lane};
 use super::super::plan::{Plan, Way};
 use super::super::sampling::Hold;
 use super::super::wiring::EffectNumber;
+use super::Run;
 use crate::effect::Mechanism;
 use crate::model::LaneNumber;
 use crate::real::{F64x8, Real};
@@ -82,8 +83,35 @@ impl Passed {
     }
 }
 
+impl<R: EffectNumber> Run<'_, R> {
+    /// Inputs at the start, middle and end of step `j`.
+    pub(super) fn drive(&mut self, drive: &Drive, k: usize, end: usize, j: usize) {
+        let base = self.base;
+        let next = if k + 1 < end { k + 1 } else { k };
+        if self.ramped {
+            for pack in 0..self.packs {
+                let to = &mut self.ramp[pack * base.sizes.w..][..base.sizes.w];
+                for (to, series) in to.iter_mut().zip(&drive.inputs) {
+                    *to = R::constant(series[next] - series[k]);
+                }
+            }
+            self.w.copy_from_slice(&self.ramp);
+        }
+        if base.hold == Hold::Zero && j > 0 && !self.groups.iter().any(|g| g.has_input_paths()) {
+            return; // still there from the first step
+        }
+        for (i, three) in recorded(drive, base, (k, end), j).enumerate() {
+            for (u, value) in self.u.iter_mut().zip(three) {
+                for pack in 0..self.packs {
+                    u[pack * base.sizes.u + i] = R::constant(value);
+                }
+            }
+        }
+    }
+}
+
 /// Every input as it is recorded, at the start, middle and end of step `j` of sample `k`.
-pub(super) fn recorded<'a>(
+fn recorded<'a>(
     drive: &'a Drive,
     plan: &'a Plan,
     (k, end): (usize, usize),
