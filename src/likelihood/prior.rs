@@ -54,7 +54,7 @@ mod tests {
         assert!(log_prior(2.1, 2.0) > -0.1 && log_prior(-2.1, -2.0) > -0.1);
         let far = log_prior(9.2, 2.0);
         assert!((-9.0..-5.0).contains(&far), "{far}");
-        assert!(log_prior(0.0, 2.0) > -30.0);
+        assert!(log_prior(0.0, 2.0) > -40.0);
         assert!((log_prior(4.0, 2.0) - log_prior(1.0, 2.0)).abs() < 1e-12);
         assert_eq!(log_prior(7.0, 0.0), 0.0);
     }
