@@ -36,8 +36,13 @@ fn noted(found: &mut [Found], tried: &[Exchange]) {
 impl Predictor {
     /// The causes after the best exchange of a law by a parameter; whether there was one. Where there is
     /// none, laws that a parameter explains as well are noted as such.
-    pub(crate) fn exchanged(&self, found: &mut Vec<Found>, now: &mut Hypothesis) -> bool {
-        let tried = self.exchanges(found, now);
+    pub(crate) fn exchanged(
+        &self,
+        found: &mut Vec<Found>,
+        now: &mut Hypothesis,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> bool {
+        let tried = self.exchanges(found, now, stop);
         match tried.iter().filter(|e| e.gain > 0.0).max_by(|a, b| a.gain.total_cmp(&b.gain)) {
             Some(best) => {
                 (*found, *now) = (best.causes.clone(), best.fitted.clone());
@@ -50,7 +55,12 @@ impl Predictor {
         }
     }
 
-    fn exchanges(&self, found: &[Found], now: &Hypothesis) -> Vec<Exchange> {
+    fn exchanges(
+        &self,
+        found: &[Found],
+        now: &Hypothesis,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Vec<Exchange> {
         let is_moved =
             |p: usize| now.parts.iter().any(|part| matches!(part, Part::Parameter(q) if *q == p));
         let signals = &self.model.plan.signals.parameters;
@@ -67,6 +77,9 @@ impl Predictor {
         }
         let value = self.merit(now, found);
         let one = |&(cause, part, parameter): &(usize, usize, usize)| {
+            if stop() {
+                return None;
+            }
             let mut causes = found.to_vec();
             causes[cause].parts.remove(part);
             if causes[cause].parts.is_empty() {

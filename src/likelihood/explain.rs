@@ -5,9 +5,10 @@
 //! repeat  the most probable place and its laws, given the causes before (`places.rs`)
 //!         all causes fitted together, the noise anew
 //! until nothing more is probable, fitted together with the others too (`joint.rs`)
-//! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), a lag or a delay moves to
-//! another instrument (`instruments.rs`), the pole of a slow force is chosen anew, with a constant or without (`steady.rs`), and so is the law of a place, the other causes being
-//! there (`joint.rs`); then more causes
+//! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), a lag or a delay moves to another
+//! instrument (`instruments.rs`), the pole of a slow force is chosen anew, with a constant or without
+//! (`steady.rs`), and so is the law of a place, the other causes being there (`joint.rs`), an improbable error of
+//! a parameter is taken back (`taken_back.rs`); then more causes
 //! causes that are not needed beside the others are left out
 //! causes that held samples speak against are withdrawn; the rest fitted to all samples
 //! ```
@@ -45,7 +46,7 @@ impl Predictor {
         (given, most): (&Given, usize),
         held: &[Range<usize>],
         noise: Option<&Noise>,
-        stop: &dyn Fn() -> bool,
+        stop: &(dyn Fn() -> bool + Sync),
     ) -> Result<Explanation, LikelihoodError> {
         let mut fit = self.blinded(held);
         let Begun { null, mut found, mut now } = fit.first_hypothesis(given, noise)?;
@@ -57,13 +58,14 @@ impl Predictor {
             (found, now) = fit.one_by_one((found, now), most, stop, &mut first)?;
             // laws that give way to each other in turn end where they were before
             let mut exchanged = || {
-                fit.exchanged(&mut found, &mut now)
+                fit.exchanged(&mut found, &mut now, stop)
                     || fit
-                        .moved_between_instruments(&mut found, &mut now)
+                        .moved_between_instruments(&mut found, &mut now, stop)
                         .map(|tried| elsewhere = tried)
                         .is_none()
-                    || fit.steadied(&mut found, &mut now, most)
-                    || fit.laws_anew(&mut found, &mut now) && seen.insert(now.names())
+                    || fit.steadied((&mut found, &mut now), most, stop)
+                    || fit.laws_anew(&mut found, &mut now, stop) && seen.insert(now.names())
+                    || fit.taken_back(&mut found, &mut now, stop)
             };
             if stop() || !exchanged() {
                 break;
@@ -83,7 +85,8 @@ impl Predictor {
             withdrawn.push(found.remove(worst.0));
             now = worst.1;
         }
-        Ok(Explanation { full, ..all.finished((found, withdrawn), now, first)? })
+        let fitted = if stop() { None } else { all.fit_all(&mut found, &now.theta, &now.noise) };
+        Ok(Explanation { full, ..all.finished((found, withdrawn), fitted.unwrap_or(now), first)? })
     }
 
     /// Causes one after the other, beside those that are known.
@@ -91,7 +94,7 @@ impl Predictor {
         &self,
         (mut found, mut now): (Vec<Found>, Hypothesis),
         most: usize,
-        stop: &dyn Fn() -> bool,
+        stop: &(dyn Fn() -> bool + Sync),
         first: &mut First,
     ) -> Result<(Vec<Found>, Hypothesis), LikelihoodError> {
         while laws(&found) < most && !stop() {
@@ -112,7 +115,9 @@ impl Predictor {
                 break;
             }
             let Some(best) = plainest(&open).filter(|set| set.log_odds > MISSING) else {
-                let Some(more) = self.joint_fit(&survey, &open, (&found, &now)) else { break };
+                let Some(more) = self.joint_fit(&survey, &open, (&found, &now), stop) else {
+                    break;
+                };
                 (found, now) = more;
                 continue;
             };
@@ -146,7 +151,7 @@ impl Predictor {
     }
 
     /// The predictor of a model that has a hypothesis in it.
-    fn holding(&self, of: &Hypothesis) -> Result<Self, LikelihoodError> {
+    pub(super) fn holding(&self, of: &Hypothesis) -> Result<Self, LikelihoodError> {
         let mut here = self.clone();
         here.model = self.extended(&of.parts, &of.theta)?;
         here.system.effects.extend(self.placed(&of.parts));
@@ -225,14 +230,13 @@ impl Predictor {
         refutes(gain, found[i].log_odds).then_some((i, rest))
     }
 
-    /// The causes that are left, fitted to all samples.
+    /// The causes that are left, as they are said.
     fn finished(
         &self,
         (mut found, withdrawn): (Vec<Found>, Vec<Found>),
         now: Hypothesis,
         first: First,
     ) -> Result<Explanation, LikelihoodError> {
-        let now = self.fit_all(&mut found, &now.theta, &now.noise).unwrap_or(now);
         dealt(&mut found, &now);
         let (mut now, mut run) = self.evaluated(now)?;
         if let Some(noise) = self.needed_noise(&now, &run.path)? {

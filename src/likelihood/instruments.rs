@@ -32,8 +32,9 @@ impl Predictor {
         &self,
         found: &mut Vec<Found>,
         now: &mut Hypothesis,
+        stop: &(dyn Fn() -> bool + Sync),
     ) -> Option<Vec<Tried>> {
-        let tried = self.at_other_instruments(found, now);
+        let tried = self.at_other_instruments(found, now, stop);
         let better = tried.iter().filter(|t| t.gain > 0.0);
         let Some(best) = better.max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
             return Some(tried);
@@ -60,7 +61,12 @@ impl Predictor {
         }
     }
 
-    fn at_other_instruments(&self, found: &mut Vec<Found>, now: &mut Hypothesis) -> Vec<Tried> {
+    fn at_other_instruments(
+        &self,
+        found: &mut Vec<Found>,
+        now: &mut Hypothesis,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Vec<Tried> {
         let late = |(i, cause): (usize, &Found)| match &cause.parts[..] {
             [Part::Law { law, .. }] if is_late(law) => Some((i, law.clone())),
             _ => None,
@@ -95,6 +101,9 @@ impl Predictor {
         }
         let value = self.merit(now, found);
         let one = |(cause, place, part): (usize, _, Part)| {
+            if stop() {
+                return None;
+            }
             let mut causes = found.to_vec();
             let choice = causes[cause].choice;
             causes[cause] = Found { parts: vec![part], choice, ..self.as_cause(place) };

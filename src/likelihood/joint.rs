@@ -33,6 +33,7 @@ impl Predictor {
         survey: &Survey,
         open: &[Weighed],
         (found, now): (&[Found], &Hypothesis),
+        stop: &(dyn Fn() -> bool + Sync),
     ) -> Option<(Vec<Found>, Hypothesis)> {
         if found.is_empty() {
             return None;
@@ -47,6 +48,9 @@ impl Predictor {
         }
         let before = self.merit(now, found);
         let one = |set: &&Weighed| {
+            if stop() {
+                return None;
+            }
             let mut all = found.to_vec();
             all.push(self.of(survey, set));
             let start = &set.hypothesis;
@@ -63,12 +67,17 @@ impl Predictor {
     }
 
     /// The causes with the law of one place chosen anew beside the others; whether it is another one.
-    pub(crate) fn laws_anew(&self, found: &mut Vec<Found>, now: &mut Hypothesis) -> bool {
+    pub(crate) fn laws_anew(
+        &self,
+        found: &mut Vec<Found>,
+        now: &mut Hypothesis,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> bool {
         // one cause alone was chosen as it stands
         if found.len() < 2 {
             return false;
         }
-        (0..found.len()).any(|i| self.law_anew(found, now, i))
+        (0..found.len()).any(|i| !stop() && self.law_anew(found, now, i))
     }
 
     fn law_anew(&self, found: &mut Vec<Found>, now: &mut Hypothesis, at: usize) -> bool {

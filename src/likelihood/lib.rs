@@ -65,6 +65,7 @@ mod slopes;
 mod smoother;
 mod std_error;
 mod steady;
+mod taken_back;
 mod tangent;
 mod transition;
 mod weigh;

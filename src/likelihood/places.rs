@@ -85,7 +85,7 @@ impl Predictor {
         &self,
         noise: &Noise,
         at: Option<(Site, Option<usize>)>,
-        stop: &dyn Fn() -> bool,
+        stop: &(dyn Fn() -> bool + Sync),
     ) -> Result<Survey, LikelihoodError> {
         let null = self.renewed(&self.model, noise, 2)?;
         let wanted = Wanted { theta: true, seen: true, gate: Some(self.gate()) };
@@ -125,7 +125,7 @@ impl Predictor {
             }
             done.push(place.spot);
             let quick = quick.get_or_insert_with(|| self.quick(&null.noise, value));
-            fitted.extend(self.fitted(quick, &path, &spots, place));
+            fitted.extend(self.fitted((quick, &path), &spots, place, stop));
         }
         let merits = fitted.iter().map(|(h, _)| h.criterion(self.observed()));
         let best = merits.fold(nothing.criterion(self.observed()), f64::max);
@@ -212,10 +212,10 @@ impl Predictor {
     /// chosen from.
     fn fitted(
         &self,
-        quick: &Self,
-        path: &Path,
+        (quick, path): (&Self, &Path),
         spots: &[Spotted],
         place: &Led,
+        stop: &(dyn Fn() -> bool + Sync),
     ) -> Vec<(Hypothesis, usize)> {
         let spot = &spots[place.spot];
         let theta = &self.model.theta;
@@ -229,22 +229,31 @@ impl Predictor {
         let samples = self.observed();
         let merit = |h: &Hypothesis| h.criterion(samples);
         let order = |all: &mut Vec<Hypothesis>| all.sort_by(|a, b| merit(b).total_cmp(&merit(a)));
-        let race = |parts: Vec<Part>| quick.raced(parts, theta, &place.noise);
+        // what is found after a stop is not looked at
+        let race = |parts: Vec<Part>| match stop() {
+            true => None,
+            false => quick.raced(parts, theta, &place.noise),
+        };
         let mut raced: Vec<Hypothesis> = starts.into_par_iter().filter_map(race).collect();
         order(&mut raced);
         // the noise anew only for those that it could still bring to the front
         raced.truncate(going_on(&raced, RACED, merit));
-        let again = |h: Hypothesis| quick.refit(h);
+        let again = |h: Hypothesis| if stop() { None } else { quick.refit(h) };
         let mut found: Vec<Hypothesis> = raced.into_par_iter().filter_map(again).collect();
         order(&mut found);
         // the integrator's own steps for what is not far behind after that
         let far = found.split_off(going_on(&found, DECIDED, merit));
-        let fit = |h: Hypothesis| self.refit(self.fit(h.parts, &h.theta, &h.noise)?);
+        let fit = |h: Hypothesis| match stop() {
+            true => None,
+            false => self.refit(self.fit(h.parts, &h.theta, &h.noise)?),
+        };
         let mut found: Vec<Hypothesis> = found.into_par_iter().filter_map(fit).collect();
         found.extend(far);
         order(&mut found);
         // single laws are left out again as long as that is better
-        while let Some(best) = found.first().filter(|best| best.parts.len() > 1).cloned() {
+        while !stop()
+            && let Some(best) = found.first().filter(|best| best.parts.len() > 1).cloned()
+        {
             let mut fewer: Vec<Vec<Part>> = vec![];
             for i in 0..best.parts.len() {
                 let mut parts = best.parts.clone();

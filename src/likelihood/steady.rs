@@ -13,7 +13,7 @@
 
 use rayon::prelude::*;
 
-use super::found::{Found, laws};
+use super::found::{Found, dealt, joined, laws};
 use super::hypothesis::{Hypothesis, Part};
 use super::laws::offsets;
 use super::noise::Noise;
@@ -21,14 +21,17 @@ use super::predictor::Predictor;
 use super::select::POLES;
 use super::tangent::Site;
 
+/// Of all poles and constants, those that are fitted to the end.
+const FITTED: usize = 3;
+
 impl Predictor {
     /// The causes with the best other pole of a slow force, with or without a constant at its channel; whether
     /// there was a better one.
     pub(crate) fn steadied(
         &self,
-        found: &mut Vec<Found>,
-        now: &mut Hypothesis,
+        (found, now): (&mut Vec<Found>, &mut Hypothesis),
         most: usize,
+        stop: &(dyn Fn() -> bool + Sync),
     ) -> bool {
         // a constant alone was asked for under the noise of nothing
         let channels = 0..if found.is_empty() { 0 } else { now.noise.slow.len() };
@@ -44,8 +47,12 @@ impl Predictor {
                 constants.chain(plain).map(move |causes| (causes, noise.clone()))
             })
             .collect();
+        let tried = self.leading_of(tried, now, stop);
         let before = self.merit(now, found);
         let fitted = |(mut causes, noise): (Vec<Found>, Noise)| {
+            if stop() {
+                return None;
+            }
             let fit = self.fit_all(&mut causes, &now.theta, &noise)?;
             let gain = self.merit(&fit, &causes) - before;
             Some((gain, causes, fit))
@@ -64,6 +71,26 @@ impl Predictor {
         }
         (*found, *now) = (causes, fit);
         true
+    }
+
+    /// The most probable of some causes and noises after a step of each: noise, then numbers.
+    fn leading_of(
+        &self,
+        tried: Vec<(Vec<Found>, Noise)>,
+        now: &Hypothesis,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Vec<(Vec<Found>, Noise)> {
+        let raced = |(mut causes, noise): (Vec<Found>, Noise)| {
+            let parts = joined(&causes);
+            let model = self.extended(&parts, &now.theta).ok().filter(|_| !stop())?;
+            let noise = self.renewed(&model, &noise, 1).ok()?.noise;
+            let fitted = self.fit_in(1, parts, &now.theta, &noise)?;
+            dealt(&mut causes, &fitted);
+            Some((self.merit(&fitted, &causes), causes, fitted.noise))
+        };
+        let mut all: Vec<_> = tried.into_par_iter().filter_map(raced).collect();
+        all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        all.into_iter().take(FITTED).map(|(_, causes, noise)| (causes, noise)).collect()
     }
 
     /// The causes with a constant at a channel beside them, for each law of a constant; none where there is

@@ -18,6 +18,8 @@ pub struct Rates {
     seen: Vec<(Vec<f64>, Vec<f64>)>,
     /// What each entry is.
     origins: Vec<Origin>,
+    /// Its unit as text, empty where none is declared.
+    units: Vec<String>,
     /// States whose derivative is another state whatever the parameters are.
     defined: Vec<bool>,
     /// Per input the input that is declared to be its rate of change.
@@ -103,7 +105,8 @@ impl Rates {
             }
         }
         let origins = sources.entries.iter().map(|(_, origin)| *origin).collect();
-        Self { seen, origins, defined, of_inputs }
+        let units = sources.entries.iter().map(|(signal, _)| signal.unit.clone()).collect();
+        Self { seen, origins, units, defined, of_inputs }
     }
 
     /// Whether the equation of a state only says what another state is (q' = v): nothing can be
@@ -135,10 +138,13 @@ impl Rates {
         })
     }
 
-    /// Whether `entry` is the rate of some other state or coordinate.
+    /// Whether `entry` is the rate of some other state or coordinate. What has the unit of that is none, but
+    /// what is left to go, as `command - angle` of a servo.
     pub fn is_rate(&self, entry: usize) -> bool {
+        let unit = &self.units[entry];
         (0..self.origins.len()).any(|other| {
             matches!(self.origins[other], Origin::Own(_) | Origin::State(_))
+                && (unit.is_empty() || *unit != self.units[other])
                 && self.rate(other).is_some_and(|(found, _)| self.same(found, entry))
         })
     }
@@ -203,6 +209,23 @@ mod tests {
         // a factor of 1 that is a parameter may be wrong
         assert_eq!(rates("c*v"), [false, false]);
         assert_eq!(rates("v - q"), [false, false]);
+    }
+
+    #[test]
+    fn what_is_left_to_go_is_no_velocity() {
+        let velocity = |unit: &str| {
+            let text = format!(
+                "sampling_time = 0.1\n[model.equations]\ninputs = [{{ name = \"command\", unit = \"deg\" }}]\n\
+                 states = [{{ name = \"rudder\", unit = \"deg\", derivative = \"(command - rudder)/t\" }}]\n\
+                 outputs = [{{ name = \"angle\", value = \"rudder\" }}]\nparameters = [{{ name = \"t\", value = 2.0 }}]\n\
+                 coordinates = [{{ name = \"demand\", unit = \"{unit}\", value = \"command - rudder\" }}]\n"
+            );
+            let plan = parse(&text, "rudder.toml", Format::Toml).unwrap().plan(0.1).unwrap();
+            plan.is_velocity(plan.sources.find("demand").unwrap())
+        };
+        // a rate but for a factor, in the unit of what it would be the rate of
+        assert!(!velocity("deg"));
+        assert!(velocity("deg/s") && velocity(""));
     }
 
     #[test]
