@@ -87,7 +87,7 @@ impl Predictor {
             }
             let place = (Site::Parameter(parameter), None);
             causes.push(Found { parts: vec![Part::Parameter(parameter)], ..self.as_cause(place) });
-            let fitted = self.fit_all(&mut causes, &now.theta, &now.noise)?;
+            let fitted = self.fit_all_raced(&mut causes, now, value)?;
             let gain = self.merit(&fitted, &causes) - value;
             // against the law that it was exchanged for
             if let Some(last) = causes.last_mut() {

@@ -53,8 +53,7 @@ impl Predictor {
             }
             let mut all = found.to_vec();
             all.push(self.of(survey, set));
-            let start = &set.hypothesis;
-            let fitted = self.fit_all(&mut all, &start.theta, &start.noise)?;
+            let fitted = self.fit_all_raced(&mut all, &set.hypothesis, before)?;
             let gain = self.merit(&fitted, &all) - before;
             let last = all.last_mut()?;
             last.log_odds = gain;
@@ -87,7 +86,7 @@ impl Predictor {
             let mut all = found.clone();
             let parts = set.hypothesis.parts.clone();
             all[at] = Found { parts, choice: set.choice, ..own.clone() };
-            let fitted = self.fit_all(&mut all, &now.theta, &now.noise)?;
+            let fitted = self.fit_all_raced(&mut all, now, present)?;
             let gain = self.merit(&fitted, &all) - present;
             Some((own.as_set(&all[at], &fitted, gain), all, fitted))
         };

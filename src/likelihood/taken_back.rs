@@ -43,7 +43,7 @@ impl Predictor {
             if stop() {
                 return None;
             }
-            let fitted = self.fit_all(&mut causes, &from.theta, &from.noise)?;
+            let fitted = self.fit_all_raced(&mut causes, &from, before)?;
             Some((self.merit(&fitted, &causes), causes, fitted))
         };
         let all: Vec<_> = tried.into_par_iter().filter_map(fitted).collect();
