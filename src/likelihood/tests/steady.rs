@@ -29,7 +29,7 @@ fn steadied(constant: f64) -> (Vec<Found>, Hypothesis, bool) {
     let given = Given { laws: with(SLIDE, friction).effects, parameters: vec![] };
     let Begun { mut found, now, .. } = predictor.first_hypothesis(&given, Some(&walk)).unwrap();
     let mut now = predictor.fit(now.parts, &now.theta, &now.noise).unwrap();
-    let is_better = predictor.steadied(&mut found, &mut now, 5);
+    let is_better = predictor.steadied((&mut found, &mut now), 5, &|| false);
     (found, now, is_better)
 }
 

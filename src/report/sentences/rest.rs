@@ -137,11 +137,11 @@ pub fn all_left(finding: &Finding) -> Vec<String> {
     finding.left.iter().map(one).collect()
 }
 
-/// `A simulation of angle is off by 6.9 times the noise: it knows nothing of what disturbs the plant ..`
+/// `A simulation of angle leaves 6.9 times the noise, what disturbs the plant among it: judge ..`
 pub(super) fn left_by_disturbance(name: &str, ratio: f64) -> String {
     format!(
-        "A simulation of {name} is off by {}: it knows nothing of what disturbs the plant, and says \
-         nothing of the model by that.",
+        "A simulation of {name} leaves {}, what disturbs the plant among it: judge the model by its \
+         predictions.",
         over_noise(ratio)
     )
 }

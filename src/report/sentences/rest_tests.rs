@@ -50,7 +50,7 @@ fn what_is_left_and_what_was_supposed() {
         offset.contains("from sample to sample. Most of it is its mean, 2.9 V: a constant offset")
     );
     let disturbed = left_by_disturbance("y", 6.94);
-    let first = "A simulation of y is off by 6.9 times the noise: ";
+    let first = "A simulation of y leaves 6.9 times the noise, ";
     assert!(disturbed.starts_with(first), "{disturbed}");
     let facts = RecordFacts { records: 1, samples: 400, sampling_time: 0.1, test_samples: None };
     assert!(record(&facts).starts_with("400 samples of one record, 0.1000 s apart; "));
