@@ -4,6 +4,7 @@ use super::hypothesis::{Hypothesis, Part, names};
 use super::noise::Noise;
 use super::places::Survey;
 use super::predictor::Predictor;
+use super::racing::RACED;
 use super::ranked::FittedLaws;
 use super::tangent::Site;
 use super::weigh::Weighed;
@@ -81,6 +82,21 @@ impl Predictor {
         let fitted = self.refit(self.fit(joined(found), theta, noise)?)?;
         dealt(found, &fitted);
         Some(fitted)
+    }
+
+    /// All causes fitted together; the noise anew only where that may bring them near a merit that is known.
+    pub(super) fn fit_all_raced(
+        &self,
+        found: &mut [Found],
+        from: &Hypothesis,
+        best: f64,
+    ) -> Option<Hypothesis> {
+        let raced = self.raced(joined(found), &from.theta, &from.noise)?;
+        dealt(found, &raced);
+        if self.merit(&raced, found) < best - RACED {
+            return Some(raced);
+        }
+        self.fit_all(found, &raced.theta, &raced.noise)
     }
 
     /// A set of a survey as a cause.

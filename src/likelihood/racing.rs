@@ -7,7 +7,6 @@
 use std::sync::Arc;
 
 use super::follow::Wanted;
-use super::found::{Found, dealt, joined};
 use super::hypothesis::{Hypothesis, Part};
 use super::noise::Noise;
 use super::parametrised::Model;
@@ -56,21 +55,6 @@ impl Predictor {
         let plan = Plan::new(Arc::new(Base { substeps, ..own }), &system.effects).ok()?;
         let model = Model { plan, theta: self.model.theta.clone() };
         Some(Self { model, ..self.clone() })
-    }
-
-    /// All causes fitted together; the noise anew only where that may bring them near a merit that is known.
-    pub(super) fn fit_all_raced(
-        &self,
-        found: &mut [Found],
-        from: &Hypothesis,
-        best: f64,
-    ) -> Option<Hypothesis> {
-        let raced = self.raced(joined(found), &from.theta, &from.noise)?;
-        dealt(found, &raced);
-        if self.merit(&raced, found) < best - RACED {
-            return Some(raced);
-        }
-        self.fit_all(found, &raced.theta, &raced.noise)
     }
 
     /// A hypothesis after a race.
