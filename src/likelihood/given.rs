@@ -102,7 +102,7 @@ impl Predictor {
             None => None,
         };
         let mut card = placed.effect.card();
-        if card.states > 0 || !placed.also_of.is_empty() || !placed.also_into.is_empty() {
+        if !placed.also_of.is_empty() || !placed.also_into.is_empty() {
             return None;
         }
         let laws = register::effects();

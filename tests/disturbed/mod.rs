@@ -8,6 +8,7 @@
 pub mod plants;
 
 mod bare;
+mod hysteretic;
 mod joint;
 mod more;
 mod rectified;

@@ -1,8 +1,8 @@
 //! Direct feedthrough: whether an output at a sample follows the inputs of the same sample, `dh/du != 0` in
 //! `y[k] = h(x[k], u[k])`.
 //!
-//! Where none does, a controller that reads the output makes the input of a sample follow its noise, and
-//! that input tells nothing of the model (Ljung, "System Identification", 2nd ed., section 13.4).
+//! Where an output does not, a controller that reads it makes the input of a sample follow its noise, and
+//! that input tells nothing of what the model leaves of it (Ljung, "System Identification", 2nd ed., section 13.4).
 
 use super::run::Run;
 use crate::statistics::deviation;
@@ -12,11 +12,12 @@ use crate::system::{Drive, Hold};
 const AT: [usize; 4] = [1, 8, 32, 63];
 
 impl Run<'_> {
-    /// The sample from which on inputs may tell of what a model leaves: the same one (0) where a change of the
-    /// inputs there changes an output, else the one before (1).
-    pub fn first_lag(&self) -> usize {
+    /// Per output: the sample from which on inputs may tell of what a model leaves of it, the same one (0) where
+    /// a change of the inputs there changes it, else the one before (1).
+    pub fn first_lags(&self) -> Vec<usize> {
+        let outputs = self.plan.sizes.y;
         if self.system.sampling.hold != Hold::Zero {
-            return 0;
+            return vec![0; outputs];
         }
         let last = |k: usize, by: f64| {
             let of = |u: &Vec<f64>| {
@@ -31,7 +32,12 @@ impl Run<'_> {
             let track = self.system.run(&self.plan, &drive, &[lane]).swap_remove(0);
             track.y.iter().map(|y| y[k].to_bits()).collect::<Vec<u64>>()
         };
-        let is_direct = |k: usize| k < self.drive.len() && last(k, 0.0) != last(k, 1.0);
-        usize::from(!AT.into_iter().any(is_direct))
+        let both: Vec<[Vec<u64>; 2]> = AT
+            .into_iter()
+            .filter(|k| *k < self.drive.len())
+            .map(|k| [0.0, 1.0].map(|by| last(k, by)))
+            .collect();
+        let is_direct = |o: usize| both.iter().any(|[same, other]| same[o] != other[o]);
+        (0..outputs).map(|o| usize::from(!is_direct(o))).collect()
     }
 }

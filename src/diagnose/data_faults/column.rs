@@ -47,8 +47,9 @@ fn noise(system: &System, records: &[Record]) -> Result<f64, EvaluateError> {
     for record in records {
         let run = Simulation::of(system, record, Init::Forgotten)?;
         let inputs: Vec<&[f64]> = record.inputs.iter().map(|u| &u.values[..]).collect();
-        let first_lag = Run::new(system, record)?.first_lag();
-        for (signal, (_, y)) in record.outputs.iter().zip(&run.outputs) {
+        let first_lags = Run::new(system, record)?.first_lags();
+        for ((signal, (_, y)), first_lag) in record.outputs.iter().zip(&run.outputs).zip(first_lags)
+        {
             let left: Vec<f64> = signal.values.iter().zip(y).map(|(a, b)| a - b).collect();
             let floor = predicted(Left { r: &left, drives: &inputs, first_lag })
                 .map_or(0.0, |floor| floor.std);

@@ -64,13 +64,14 @@ fn closed_loop(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>]) -> Opti
         })
         .collect();
     // an output that has something of the input of the same sample may have more of it
-    let direct = nominal.first_lag(problem) == 0;
-    let loops = scores(&problem.drive.inputs, &left, &stretches);
+    let follows: Vec<bool> =
+        (0..problem.y.len()).map(|o| nominal.first_lag(problem, o) > 0).collect();
+    let loops = scores(&problem.drive.inputs, (&left, &follows), &stretches);
     let names = &problem.base.signals.inputs;
     let found = loops.into_iter().zip(names).filter_map(|((at_once, later), signal)| {
         let (score, same_sample_only) = match later > REACTS {
             true => (later, false),
-            false => (if direct { 0.0 } else { at_once }, true),
+            false => (at_once, true),
         };
         let input = signal.name.clone();
         (score > REACTS).then_some(ClosedLoop { input, score, same_sample_only })
@@ -78,8 +79,13 @@ fn closed_loop(problem: &Problem<'_>, nominal: &Nominal, y: &[Vec<f64>]) -> Opti
     found.max_by(|a, b| a.score.total_cmp(&b.score))
 }
 
-/// Per input, the score that it reacts to what is left at once, and with a delay.
-fn scores(inputs: &[Vec<f64>], left: &[Vec<f64>], stretches: &[Range<usize>]) -> Vec<(f64, f64)> {
+/// Per input, the score that it reacts at once to what is left of outputs that it does not reach at once
+/// (`follows`), and with a delay to what is left of any.
+fn scores(
+    inputs: &[Vec<f64>],
+    (left, follows): (&[Vec<f64>], &[bool]),
+    stretches: &[Range<usize>],
+) -> Vec<(f64, f64)> {
     let past = PAST.min(stretches.iter().map(ExactSizeIterator::len).max().unwrap_or(0) / 8);
     let mut rows: Vec<usize> = stretches.iter().flat_map(|s| s.start + past..s.end).collect();
     rows.drain(..rows.len().saturating_sub(MOST));
@@ -103,8 +109,10 @@ fn scores(inputs: &[Vec<f64>], left: &[Vec<f64>], stretches: &[Range<usize>]) ->
     let delayed = |delay: usize| lagged(&by_sample, delay..delay + 1);
     let late: Vec<Vec<f64>> =
         DELAYS.iter().filter(|d| (1..=past).contains(*d)).flat_map(|&d| delayed(d)).collect();
+    let asked = delayed(0).into_iter().zip(follows).filter(|(_, follows)| **follows);
+    let at_once: Vec<Vec<f64>> = asked.map(|(news, _)| news).collect();
     let own: Vec<Vec<f64>> = inputs.iter().map(|u| unpredicted(&at_rows(u), &driven)).collect();
-    let of = |own: &Vec<f64>| (reaction(own, &delayed(0)), reaction(own, &late));
+    let of = |own: &Vec<f64>| (reaction(own, &at_once), reaction(own, &late));
     own.iter().map(of).collect()
 }
 

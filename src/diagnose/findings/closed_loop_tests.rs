@@ -39,7 +39,7 @@ fn coloured(pole: f64, size: f64, seed: u64) -> Vec<f64> {
 
 /// Both scores of the one input.
 fn of_one(u: Vec<f64>, e: Vec<f64>) -> (f64, f64) {
-    scores(&[u], &[e], from_ref(&(0..N)))[0]
+    scores(&[u], (&[e], &[true]), from_ref(&(0..N)))[0]
 }
 
 #[test]
@@ -104,6 +104,6 @@ fn a_loop_is_seen() {
 fn too_few_samples_say_nothing() {
     let u = noise::white(100, 1.0, 1).unwrap();
     let u = from_ref(&u);
-    assert_eq!(scores(u, u, from_ref(&(0..100))), [(0.0, 0.0)]);
-    assert_eq!(scores(u, u, &[]), [(0.0, 0.0)]);
+    assert_eq!(scores(u, (u, &[true]), from_ref(&(0..100))), [(0.0, 0.0)]);
+    assert_eq!(scores(u, (u, &[true]), &[]), [(0.0, 0.0)]);
 }

@@ -28,9 +28,9 @@ impl Context<'_, '_> {
         used: &[Record],
     ) -> BTreeMap<String, NoiseFloor> {
         let problem = self.problem;
-        let (share, first_lag) = (self.share(chosen), self.nominal.first_lag(self.problem));
-        let left = self.off(&chosen.y);
+        let (share, left) = (self.share(chosen), self.off(&chosen.y));
         let of = |o: usize| {
+            let first_lag = self.nominal.first_lag(problem, o);
             let periods = used.first().filter(|_| used.len() == 1).and_then(Record::periods);
             let measured = &self.joined.measured[o];
             let repeated = periods.and_then(|p| repeated(measured, p.samples, p.samples / 10));
@@ -67,7 +67,8 @@ impl Context<'_, '_> {
         before: &Scored,
         (off, drives): (&[Vec<f64>], &[&[f64]]),
     ) -> Vec<Option<Floor>> {
-        let (share, first_lag) = (self.share(chosen), self.nominal.first_lag(self.problem));
+        let (share, first_lag) =
+            (self.share(chosen), |o: usize| self.nominal.first_lag(self.problem, o));
         let inputs = data.inputs(drives.len());
         let ends = test.begins.iter().skip(1).copied();
         let count = test.measured.iter().map(Vec::len).max().unwrap_or(0);
@@ -80,12 +81,14 @@ impl Context<'_, '_> {
             let (inputs, segments) = (&test.inputs[..], &segments[..]);
             let change: Vec<f64> =
                 simulated.iter().zip(&test.before[o]).map(|(a, b)| a - b).collect();
+            let first_lag = first_lag(o);
             let of =
                 Simulated { left: &left, simulated, change: &change, inputs, segments, first_lag };
             whole.then(|| independent(&of, share)).flatten()
         };
         let foretold = |o: usize| {
-            data.predicted(&before.errors[o], &inputs, Left { r: &off[o], drives, first_lag })
+            let left = Left { r: &off[o], drives, first_lag: first_lag(o) };
+            data.predicted(&before.errors[o], &inputs, left)
         };
         let floor = |o| data.repeated(o).or_else(|| own(o)).or_else(|| foretold(o));
         (0..before.errors.len()).into_par_iter().map(floor).collect()

@@ -121,8 +121,8 @@ impl<'a> Planner<'a> {
 fn noise(prepared: &Prepared<'_>, records: &[Record]) -> Option<Vec<NoiseFloor>> {
     let (problem, joined) = (&prepared.problem, &prepared.joined);
     let y0 = problem.simulate(&prepared.start, Grain::Fine)?;
-    let first_lag = prepared.nominal.first_lag(problem);
     let floor = |o: usize| {
+        let first_lag = prepared.nominal.first_lag(problem, o);
         let periods = records.first().filter(|_| records.len() == 1).and_then(Record::periods);
         let of_periods = periods.and_then(|p| {
             let y = records.first()?.outputs.get(o)?;

@@ -43,7 +43,8 @@ pub(crate) struct Nominal {
     count: usize,
     sampling_time: f64,
     /// What residuals are regressed on, once somebody asks.
-    features: OnceLock<Option<Features>>,
+    /// By the sample from which on inputs count.
+    features: [OnceLock<Option<Features>>; 2],
 }
 
 impl Nominal {
@@ -108,14 +109,15 @@ impl Nominal {
             sizes: n,
             count: known,
             sampling_time: dt,
-            features: OnceLock::new(),
+            features: [OnceLock::new(), OnceLock::new()],
         })
     }
 
-    /// What residuals of this record are regressed on; `None` where it is too short.
-    pub fn features(&self, problem: &Problem<'_>) -> Option<&Features> {
-        let series = |entry| (self.series(entry), self.first_lag_of(problem, entry));
-        self.features.get_or_init(|| Features::new(problem, series)).as_ref()
+    /// What residuals of an output of this record are regressed on; `None` where it is too short.
+    pub fn features(&self, problem: &Problem<'_>, output: usize) -> Option<&Features> {
+        let first = self.first_lag(problem, output);
+        let series = |entry| (self.series(entry), self.first_lag_of(problem, entry, first));
+        self.features[first].get_or_init(|| Features::new(problem, series)).as_ref()
     }
 
     /// The factor between the columns of two targets that are parallel everywhere:
@@ -152,24 +154,25 @@ impl Nominal {
         self.pushes.points.iter().map(slope).any(|slope| slope != 0.0)
     }
 
-    /// The sample from which on inputs may tell of what a model leaves: the same one (0) where an output has
-    /// something of it, else the one before (1). There a right model leaves the input of the same sample out,
+    /// The sample from which on inputs may tell of what a model leaves of an output: the same one (0) where that
+    /// has something of it, else the one before (1). There a right model leaves the input of the same sample out,
     /// and a controller that reads the output makes it follow the noise.
-    pub fn first_lag(&self, problem: &Problem<'_>) -> usize {
+    pub fn first_lag(&self, problem: &Problem<'_>, output: usize) -> usize {
         let held = problem.system.sampling.hold == Hold::Zero;
-        usize::from(held && !(0..self.sizes.u).any(|i| self.is_direct(problem, i)))
+        let reaches = |input| self.moves_at_once(problem, input, (Ask::Output, output));
+        usize::from(held && !(0..self.sizes.u).any(reaches))
     }
 
-    /// The same for what an entry of the table of sources tells.
-    fn first_lag_of(&self, problem: &Problem<'_>, entry: usize) -> usize {
+    /// The same for what an entry of the table of sources tells, `first` being that of inputs.
+    fn first_lag_of(&self, problem: &Problem<'_>, entry: usize, first: usize) -> usize {
         let asked = match problem.base.sources.entries[entry].1 {
-            Origin::Input(_) => return self.first_lag(problem),
+            Origin::Input(_) => return first,
             Origin::Own(i) => (Ask::Coordinates, i),
             Origin::Output(o) => (Ask::Output, o),
             Origin::Time | Origin::State(_) => return 0,
         };
         match (0..self.sizes.u).any(|input| self.moves_at_once(problem, input, asked)) {
-            true => self.first_lag(problem),
+            true => first,
             false => 0,
         }
     }

@@ -69,7 +69,7 @@ fn of_output(of: &Residuals, o: usize) -> Option<f64> {
     tested.push(vec![1.0; n]);
     tested.push((0..n).map(|k| k as f64 / n.max(1) as f64).collect());
     tested.extend(curves(&of.given[o], 0));
-    for lag in of.first_lag..=LAGS {
+    for lag in of.first_lags[o]..=LAGS {
         for input in &of.inputs {
             tested.extend(curves(input, lag));
         }

@@ -23,8 +23,8 @@ pub(super) struct Residuals {
     pub sensitivities: Vec<Vec<Vec<f64>>>,
     /// Per output: its sensitivities to the starts that were estimated and are not forgotten.
     pub of_starts: Vec<Vec<Vec<f64>>>,
-    /// Sample from which on inputs may tell of what is left: the same one (0), or the one before (1).
-    pub first_lag: usize,
+    /// Per output: sample from which on inputs may tell of what is left, the same one (0), or the one before (1).
+    pub first_lags: Vec<usize>,
 }
 
 impl Residuals {
@@ -32,9 +32,9 @@ impl Residuals {
     pub fn none(system: &System, records: &[Record]) -> Result<Self, EvaluateError> {
         let signals = system.signals();
         let outputs = signals.outputs.len();
-        let first_lag = match records.first() {
-            Some(record) => Run::new(system, record)?.first_lag(),
-            None => 1,
+        let first_lags = match records.first() {
+            Some(record) => Run::new(system, record)?.first_lags(),
+            None => vec![1; outputs],
         };
         Ok(Self {
             left: vec![vec![]; outputs],
@@ -43,7 +43,7 @@ impl Residuals {
             inputs: vec![vec![]; signals.inputs.len()],
             sensitivities: vec![vec![]; outputs],
             of_starts: vec![vec![]; outputs],
-            first_lag,
+            first_lags,
         })
     }
 
