@@ -46,7 +46,7 @@ impl Diagnosis<'_> {
         finer.sampling.integrator.substeps = STEPS;
         // the law, too, was chosen with steps that blunt it: it is looked for anew
         let laws = given.laws.iter().filter(|law| !is_steep(law)).cloned().collect();
-        let others = Given { laws, parameters: given.parameters.clone() };
+        let others = Given { laws, ..given.clone() };
         let (one, more) = rayon::join(|| value(self.system, &given), || value(&finer, &others));
         (more? - one? > CLEARLY).then_some(finer)
     }

@@ -9,11 +9,13 @@
 //! instrument (`instruments.rs`), the pole of a slow force is chosen anew, with a constant or without
 //! (`steady.rs`), and so is the law of a place, the other causes being there (`joint.rs`), an improbable error of
 //! a parameter is taken back (`taken_back.rs`); then more causes
-//! causes that are not needed beside the others are left out
-//! causes that held samples speak against are withdrawn; the rest fitted to all samples
+//! causes that are not needed beside the others are left out, those that held samples speak against withdrawn
+//! (`elimination.rs`); the rest fitted to all samples
 //! ```
 //!
-//! Sources: Miller, "Subset Selection in Regression", 2nd ed., 2002; Dawid, JRSS A 147, 1984.
+//! A search that is far behind another (`Given::rival`) once no further cause is probable goes no further (`racing.rs`).
+//!
+//! Source: Miller, "Subset Selection in Regression", 2nd ed., 2002.
 
 use std::collections::BTreeSet;
 use std::ops::Range;
@@ -24,10 +26,10 @@ use super::error::LikelihoodError;
 use super::explanation::{Explanation, NamedCause};
 use super::found::{First, Found, dealt, joined, laws};
 use super::given::{Begun, Given};
-use super::held_out::refutes;
 use super::hypothesis::Hypothesis;
 use super::noise::{Layout, Noise};
 use super::predictor::{Predictor, starts};
+use super::racing::RACED;
 use super::ranked::MISSING;
 use super::replay::Pass;
 use super::tangent::Site;
@@ -54,8 +56,14 @@ impl Predictor {
         let nothing = if found.is_empty() { 1.0 } else { 1.0 / (1.0 + gain.exp()) };
         let mut first = First { nothing, sets: vec![] };
         let (mut seen, mut elsewhere) = (BTreeSet::new(), vec![]);
-        loop {
+        let is_far = |now: &Hypothesis, found: &[Found]| {
+            given.rival.is_some_and(|rival| fit.merit(now, found) < rival - RACED)
+        };
+        let given_up = loop {
             (found, now) = fit.one_by_one((found, now), most, stop, &mut first)?;
+            if is_far(&now, &found) {
+                break true;
+            }
             // laws that give way to each other in turn end where they were before
             let mut exchanged = || {
                 fit.exchanged(&mut found, &mut now, stop)
@@ -68,25 +76,28 @@ impl Predictor {
                     || fit.taken_back(&mut found, &mut now, stop)
             };
             if stop() || !exchanged() {
-                break;
+                break false;
             }
-        }
+        };
         let full = laws(&found) >= most;
         // what is known is told at once to somebody who asks to stop
-        if !stop() {
+        let is_over = || given_up || stop();
+        if !is_over() {
             fit.note_instruments(&mut found, &elsewhere);
             fit.pruned_causes(&mut found, &mut now, &null);
         }
+        let merit = fit.merit(&now, &found);
         let all = Self { start: fit.start.clone(), ..self.clone() };
         let mut withdrawn = vec![];
-        while !stop()
+        while !is_over()
             && let Some(worst) = all.refuted(&fit, &found, &now, &null, held)
         {
             withdrawn.push(found.remove(worst.0));
             now = worst.1;
         }
-        let fitted = if stop() { None } else { all.fit_all(&mut found, &now.theta, &now.noise) };
-        Ok(Explanation { full, ..all.finished((found, withdrawn), fitted.unwrap_or(now), first)? })
+        let fitted = if is_over() { None } else { all.fit_all(&mut found, &now.theta, &now.noise) };
+        let finished = all.finished((found, withdrawn), fitted.unwrap_or(now), first)?;
+        Ok(Explanation { full, merit, ..finished })
     }
 
     /// Causes one after the other, beside those that are known.
@@ -165,71 +176,6 @@ impl Predictor {
         of.criterion(self.observed()) + self.log_prior(of) - choice
     }
 
-    /// The hypothesis without one of its causes, fitted anew.
-    fn less(
-        &self,
-        found: &[Found],
-        now: &Hypothesis,
-        null: &Hypothesis,
-        at: usize,
-    ) -> Option<Hypothesis> {
-        if found.len() == 1 {
-            return Some(null.clone());
-        }
-        let mut rest = found.to_vec();
-        let gone = rest.remove(at);
-        let mut theta = now.theta.clone();
-        if let Site::Parameter(p) = gone.place.0 {
-            theta[p] = null.theta[p];
-        }
-        self.fit_all(&mut rest, &theta, &now.noise)
-    }
-
-    /// Leaves out causes that are not needed beside the others, the least needed first.
-    fn pruned_causes(&self, found: &mut Vec<Found>, now: &mut Hypothesis, null: &Hypothesis) {
-        loop {
-            let rests: Vec<Option<Hypothesis>> =
-                (0..found.len()).map(|i| self.less(found, now, null, i)).collect();
-            let value = |of: &Hypothesis| of.criterion(self.observed()) + self.log_prior(of);
-            for (cause, rest) in found.iter_mut().zip(&rests) {
-                if let Some(rest) = rest {
-                    cause.log_odds = value(now) - value(rest) - cause.choice;
-                }
-            }
-            let least = (0..found.len())
-                .min_by(|&a, &b| found[a].log_odds.total_cmp(&found[b].log_odds))
-                .filter(|&i| found[i].log_odds < MISSING);
-            let Some((i, rest)) = least.and_then(|i| Some((i, rests[i].clone()?))) else { return };
-            found.remove(i);
-            dealt(found, &rest);
-            *now = rest;
-        }
-    }
-
-    /// The cause that held samples speak against most, and the rest; `fit` does not see these samples.
-    fn refuted(
-        &self,
-        fit: &Self,
-        found: &[Found],
-        now: &Hypothesis,
-        null: &Hypothesis,
-        held: &[Range<usize>],
-    ) -> Option<(usize, Hypothesis)> {
-        if held.iter().all(|range| range.is_empty()) {
-            return None;
-        }
-        let with = self.density(now, held);
-        let one = |i: usize| {
-            let rest = fit.less(found, now, null, i)?;
-            let bare = self.density(&rest, held)?;
-            // what cannot even be run with it is refuted
-            Some((with.map_or(f64::NEG_INFINITY, |with| with - bare), i, rest))
-        };
-        let (gain, i, rest) =
-            (0..found.len()).filter_map(one).min_by(|a, b| a.0.total_cmp(&b.0))?;
-        refutes(gain, found[i].log_odds).then_some((i, rest))
-    }
-
     /// The causes that are left, as they are said.
     fn finished(
         &self,
@@ -266,6 +212,7 @@ impl Predictor {
             choice,
             samples: self.observed() as usize,
             full: false,
+            merit: f64::NEG_INFINITY,
             starts: begun.into_iter().map(|x| x[..nx].to_vec()).collect(),
             noise: now.noise,
         })

@@ -63,6 +63,9 @@ pub struct Explanation {
     pub samples: usize,
     /// Whether the search ended with as many laws as were asked for.
     pub full: bool,
+    /// log L - (numbers) / 2 ln(samples) less what the causes were chosen from, of the samples that they were
+    /// chosen on.
+    pub merit: f64,
     /// Most likely states at the first sample of every segment.
     pub starts: Vec<Vec<f64>>,
 }

@@ -23,6 +23,8 @@ pub struct Given {
     pub laws: Vec<Placed>,
     /// Parameters that have moved, by number, and their values.
     pub parameters: Vec<(usize, f64)>,
+    /// [`Explanation::merit`](super::Explanation) of another search, which this one competes with.
+    pub rival: Option<f64>,
 }
 
 impl Given {
@@ -30,7 +32,7 @@ impl Given {
     pub fn new(laws: Vec<Placed>, before: &[f64], after: &[f64]) -> Self {
         let both = before.iter().zip(after).enumerate();
         let parameters = both.filter(|(_, (a, b))| a != b).map(|(p, (_, b))| (p, *b)).collect();
-        Self { laws, parameters }
+        Self { laws, parameters, rival: None }
     }
 
     /// How many causes it has.
@@ -92,7 +94,7 @@ impl Predictor {
         Hypothesis { parts: vec![], theta: self.model.theta.clone(), noise, log_likelihood }
     }
 
-    /// A law of a model file as a cause; `None` where it has a memory, or stands nowhere in this model.
+    /// A law of a model file as a cause; `None` where it reads or enters several places, or none of this model.
     fn given(&self, placed: &Placed) -> Option<Found> {
         let is_there = |(name, _): &(String, String)| *name == placed.into;
         let force = self.forces().iter().position(is_there).map(Site::Force);

@@ -20,6 +20,7 @@ use lacuna_core::{data, effect, evaluate, fault, optimise, real, register, stati
 mod ahead;
 mod autoregressive;
 mod backward;
+mod elimination;
 mod error;
 mod evidence;
 mod exchange;

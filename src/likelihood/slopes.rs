@@ -3,6 +3,8 @@
 //! One column per number, along the hypothesis' own path: dw/d(number) of a law, 1 of a parameter. The tangents
 //! of the innovations follow from them (`tangent.rs`); laws that remember give them at once (`memory.rs`). Source: Ljung, "System Identification", 2nd ed., section 10.3.
 
+use rayon::prelude::*;
+
 use super::follow::Followed;
 use super::hypothesis::{Hypothesis, Part};
 use super::memory::remembers;
@@ -23,8 +25,8 @@ impl Predictor {
                     columns.push((Site::Parameter(*p), vec![1.0; path.len]).into());
                 }
                 Part::Law { law, .. } if remembers(&law.card) => {
-                    let own = law.free.iter().map(|&i| self.slope_of_memory(of, at, i));
-                    columns.extend(own.map(Column::Innovations));
+                    let slope = |&i: &usize| Column::Innovations(self.slope_of_memory(of, at, i));
+                    columns.par_extend(law.free.par_iter().map(slope));
                 }
                 Part::Law { site, source, law } => {
                     if let Some(Reading { z, reaches }) = reading {

@@ -1,6 +1,6 @@
 //! An answer of free runs, reconsidered where the records call for noise inside the plant.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 
 use crate::likelihood::{Explanation, Given, Noise, NoiseModel, Predictor};
 
@@ -32,6 +32,8 @@ const BEGUN_WITH: usize = 12;
 
 /// An answer and what it was weighed against.
 type Answer = (Finished, Option<Finished>);
+/// What a search by innovations from nothing finds, once it was asked: whatever the answer, it is the same.
+type FromNothing = OnceCell<Option<Explanation>>;
 
 /// Searches by free runs, and by innovations where the records call for it; the chosen track comes
 /// first.
@@ -42,7 +44,7 @@ pub(crate) fn search(
     watch: &dyn Watch,
 ) -> Result<Answer, DiagnoseError> {
     let (may_ask, start) = (may_be_asked(prepared, allowed, most), prepared.start.clone());
-    let is_disturbed = Cell::new(false);
+    let (is_disturbed, from_nothing) = (Cell::new(false), FromNothing::new());
     let breaks_off = |problem: &Problem<'_>, nominal: &Nominal, model: &Model| {
         let is = may_ask && leaves_noise_inside((problem, nominal, &start), model).unwrap_or(false);
         is_disturbed.set(is);
@@ -50,7 +52,7 @@ pub(crate) fn search(
     };
     let mut answer = prepared.search_unless(allowed, most, &breaks_off, watch)?;
     if is_disturbed.get() && !watch.stopped() {
-        let found = by_innovations(prepared, allowed, most, &answer, watch);
+        let found = by_innovations(prepared, (allowed, most), &answer, &from_nothing, watch);
         let is_all = |found: &Finished| {
             found.causes() > 0 && is_called_for(prepared, allowed, found).unwrap_or(false)
         };
@@ -61,7 +63,7 @@ pub(crate) fn search(
             None => answer = prepared.search(allowed, most, watch)?,
         }
     }
-    Ok(reconsidered(prepared, allowed, most, answer, watch))
+    Ok(reconsidered(prepared, (allowed, most), answer, &from_nothing, watch))
 }
 
 /// Whether the model that is diagnosed forgets where it starts within its records.
@@ -119,16 +121,16 @@ pub(crate) fn finish(
 /// The answer, or that of the innovations where it is more probable.
 fn reconsidered(
     prepared: &Prepared<'_>,
-    allowed: &Allowed,
-    most: usize,
+    (allowed, most): (&Allowed, usize),
     answer: Finished,
+    from_nothing: &FromNothing,
     watch: &dyn Watch,
 ) -> Answer {
     if !may_be_asked(prepared, allowed, most) || watch.stopped() || is_white(prepared, &answer.y) {
         return (answer, None);
     }
     watch.report(0.9, "asking for noise inside the plant");
-    match by_innovations(prepared, allowed, most, &answer, watch) {
+    match by_innovations(prepared, (allowed, most), &answer, from_nothing, watch) {
         Some(better) => (better, Some(answer)),
         None => (answer, None),
     }
@@ -146,9 +148,9 @@ pub(super) fn is_white(prepared: &Prepared<'_>, y: &[Vec<f64>]) -> bool {
 /// What the innovations find, where that is more probable than an answer.
 fn by_innovations(
     prepared: &Prepared<'_>,
-    allowed: &Allowed,
-    most: usize,
+    (allowed, most): (&Allowed, usize),
     answer: &Finished,
+    from_nothing: &FromNothing,
     watch: &dyn Watch,
 ) -> Option<Finished> {
     let problem = &prepared.problem;
@@ -188,7 +190,11 @@ fn by_innovations(
     // innovations tell nothing of a sensor whose branch they do not know
     let from_nothing = match is_all || turns_a_sensor(problem, &answer.fitted.model) {
         true => None,
-        false => explained(&Given::default(), noise),
+        false => {
+            let rival = from_answer.as_ref().map(|found| found.merit);
+            let begun = Given { rival, ..Given::default() };
+            from_nothing.get_or_init(|| explained(&begun, noise)).clone()
+        }
     };
     let none = is_bare && from_nothing.as_ref().is_some_and(|found| found.causes.is_empty());
     let ends = from_nothing.map(|found| (found, None)).into_iter();
