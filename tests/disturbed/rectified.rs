@@ -19,7 +19,8 @@ fn record(seed: u64) -> lacuna::data::Record {
 #[test]
 fn innovations_go_on_beside_a_rectifier_that_is_given() {
     let mut wrong = with(OSCILLATOR, RECTIFIER.replace("2.0", "1.9").as_str());
-    let given = Given { laws: wrong.effects.clone(), parameters: vec![(1, 3.9)] };
+    let given =
+        Given { laws: wrong.effects.clone(), parameters: vec![(1, 3.9)], ..Given::default() };
     wrong.effects.clear();
     let predictor = Predictor::new(&wrong, &[record(3)]).unwrap();
     let held = std::iter::once(2200..3000).collect::<Vec<_>>();

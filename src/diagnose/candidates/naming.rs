@@ -29,6 +29,7 @@ impl Candidate {
             one_sign: self.sign != 0.0,
             size: self.card.properties.size,
             first: first.map(|&i| self.card.parameters[i].name.to_string()),
+            gap: self.card.properties.flat_inside.map(String::from),
             is_limit: self.card.properties.limits_output,
             origin: origin.map(|own| own.name.to_string()),
             site: self.site(),

@@ -163,6 +163,8 @@ pub struct Wording {
     pub total: Option<Value>,
     /// Name of the first coefficient; none where it has none.
     pub first: Option<String>,
+    /// Name of the number that is half of its gap; none where it has none.
+    pub gap: Option<String>,
     /// Whether its numbers are limits: one of 0 lets half of a signal pass, and not all of it.
     pub is_limit: bool,
     /// Name of the value from which it counts its coordinate; none where it has none.

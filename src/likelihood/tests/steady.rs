@@ -26,7 +26,7 @@ fn steadied(constant: f64) -> (Vec<Found>, Hypothesis, bool) {
     let mut predictor = Predictor::new(&system(SLIDE), &[record]).unwrap();
     let mut walk = predictor.white(vec![1e-8]);
     walk.slow[0] = Slow::walk(0.16);
-    let given = Given { laws: with(SLIDE, friction).effects, parameters: vec![] };
+    let given = Given { laws: with(SLIDE, friction).effects, ..Given::default() };
     let Begun { mut found, now, .. } = predictor.first_hypothesis(&given, Some(&walk)).unwrap();
     let mut now = predictor.fit(now.parts, &now.theta, &now.noise).unwrap();
     let is_better = predictor.steadied((&mut found, &mut now), 5, &|| false);

@@ -5,7 +5,7 @@
 //! value plus w. So an offset of -0.08 rad on `angle` reads 0.08 rad too low.
 
 use super::column;
-use super::size::{factor, found_shape, origin, unresolved, wave};
+use super::size::{factor, found_shape, gap, growing, origin, unresolved, wave};
 use super::stated::{HALF, amplitude, headline_value};
 use crate::diagnose::{ActsWhere, Cause, InRecord, LawPart, MostLike, Site, Value, Wording};
 use crate::digits::{interval, number, percent, spaced, with_unit};
@@ -170,7 +170,7 @@ fn size(cause: &Cause) -> String {
         Size::Factor(name) => factor(cause, name),
         Size::Growing { unloaded, by } => growing(cause, unloaded, by),
         Size::First | Size::Total(_) => match headline_value(cause) {
-            Some(v) if wording.first.is_some() => format!(", {}", first(cause, v)),
+            Some(v) if wording.first.is_some() => format!(", {}{}", first(cause, v), gap(cause)),
             _ => {
                 let each = cause.parameters.iter().filter(|v| v.value.is_finite());
                 let each: Vec<String> = each
@@ -180,15 +180,6 @@ fn size(cause: &Cause) -> String {
             }
         },
     }
-}
-
-/// `, 0.31 +- 0.02 N and 0.120 +- 0.004 of load`.
-fn growing(cause: &Cause, unloaded: &str, by: &str) -> String {
-    let find = |name: &str| cause.parameters.iter().find(|v| v.name == name);
-    let (Some(unloaded), Some(by)) = (find(unloaded), find(by)) else { return String::new() };
-    let magnitude = |v: &Value| interval(v.value.abs(), v.std_error, &v.unit);
-    let load = cause.also_of.first().map_or("the load", String::as_str);
-    format!(", {} and {} of {load}", magnitude(unloaded), magnitude(by))
 }
 
 /// A coefficient with its sign in words where there are any.

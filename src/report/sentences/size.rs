@@ -135,6 +135,23 @@ pub fn formula(terms: &[(f64, String)]) -> String {
     text
 }
 
+/// `, 0.31 +- 0.02 N and 0.120 +- 0.004 of load`.
+pub(super) fn growing(cause: &Cause, unloaded: &str, by: &str) -> String {
+    let find = |name: &str| cause.parameters.iter().find(|v| v.name == name);
+    let (Some(unloaded), Some(by)) = (find(unloaded), find(by)) else { return String::new() };
+    let magnitude = |v: &Value| interval(v.value.abs(), v.std_error, &v.unit);
+    let load = cause.also_of.first().map_or("the load", String::as_str);
+    format!(", {} and {} of {load}", magnitude(unloaded), magnitude(by))
+}
+
+/// The range in which the law is lost: ` lost within 0.0196 +- 0.0005 rad of zero`.
+pub(super) fn gap(cause: &Cause) -> String {
+    let own = cause.parameters.iter().find(|v| cause.wording.gap.as_ref() == Some(&v.name));
+    own.map_or_else(String::new, |v| {
+        format!(" lost within {} of zero", interval(v.value, v.std_error, &v.unit))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use crate::diagnose::{Cause, Value};

@@ -47,6 +47,17 @@ fn damping_says_which_way_it_goes() {
 }
 
 #[test]
+fn clearance_says_how_wide_it_is() {
+    let values =
+        vec![value("slope", 54.7, 0.43, "N m/rad"), value("width", 0.0196, 0.00023, "rad")];
+    let mut cause = law("Clearance", "shaft", Some("torsion"), Site::Channel, values);
+    cause.wording.gap = Some("width".into());
+    let said = super::cause(&cause);
+    let start = "Clearance of torsion on shaft, +54.70 +- 0.86 N m/rad lost within 0.01960 +- 0.00046 rad of zero";
+    assert!(said.starts_with(start), "{said}");
+}
+
+#[test]
 fn a_sum_of_laws_is_one_sentence() {
     let values = vec![value("level", -20.4, 0.3, "N")];
     let mut cause = law("Dry friction of speed", "carriage", Some("speed"), Site::Channel, values);
