@@ -6,16 +6,22 @@
 //! log odds = criterion with it - criterion without it - ln(choices) > MISSING
 //! ```
 //!
-//! Sources: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.3; Dawid, JRSS A 147, 1984.
+//! and it goes where that is not so. In which order they are asked, its own Wald statistic says, a' P^-1 a of its
+//! coefficients a and their covariance P: one fit for each that goes.
+//!
+//! Sources: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.3; Ljung, "System Identification",
+//! 2nd ed., section 16.4; Dawid, JRSS A 147, 1984.
 
 use std::ops::Range;
 
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::found::{Found, dealt};
 use super::held_out::refutes;
-use super::hypothesis::Hypothesis;
+use super::hypothesis::{Hypothesis, Part};
 use super::predictor::Predictor;
+use super::racing::RACED;
 use super::ranked::MISSING;
 use super::tangent::Site;
 
@@ -37,7 +43,14 @@ impl Predictor {
         if let Site::Parameter(p) = gone.place.0 {
             theta[p] = null.theta[p];
         }
-        self.fit_all_raced(&mut rest, &Hypothesis { theta, ..now.clone() }, best)
+        let fitted = self.fit_all_raced(&mut rest, &Hypothesis { theta, ..now.clone() }, best)?;
+        if self.merit(&fitted, &rest) > best - RACED {
+            return Some(fitted);
+        }
+        // under the noise beside the cause it would be far too improbable
+        let model = self.extended(&fitted.parts, &fitted.theta).ok()?;
+        let own = self.renewed(&model, &fitted.noise, 1).ok()?;
+        Some(Hypothesis { noise: own.noise, log_likelihood: own.log_likelihood, ..fitted })
     }
 
     /// Leaves out causes that are not needed beside the others, the least needed first.
@@ -47,12 +60,17 @@ impl Predictor {
         now: &mut Hypothesis,
         null: &Hypothesis,
     ) {
+        let value = |of: &Hypothesis| of.criterion(self.observed()) + self.log_prior(of);
         loop {
+            while let Some((i, rest)) = self.least_needed(found, (&*now, null)) {
+                found.remove(i);
+                dealt(found, &rest);
+                *now = rest;
+            }
             let best = self.merit(now, found);
             let rest = |i: usize| self.less(found, (now, null), i, best);
             let rests: Vec<Option<Hypothesis>> =
                 (0..found.len()).into_par_iter().map(rest).collect();
-            let value = |of: &Hypothesis| of.criterion(self.observed()) + self.log_prior(of);
             for (cause, rest) in found.iter_mut().zip(&rests) {
                 if let Some(rest) = rest {
                     cause.log_odds = value(now) - value(rest) - cause.choice;
@@ -66,6 +84,48 @@ impl Predictor {
             dealt(found, &rest);
             *now = rest;
         }
+    }
+
+    /// The cause that is the least needed by its own standard errors, where a fit of the others says that it is not
+    /// needed, and that fit.
+    fn least_needed(
+        &self,
+        found: &[Found],
+        (now, null): (&Hypothesis, &Hypothesis),
+    ) -> Option<(usize, Hypothesis)> {
+        let (_, run) = self.evaluated(now.clone()).ok()?;
+        let mut covariances = self.covariances(now, &run).into_iter();
+        let each = 0.5 * self.observed().ln();
+        let apparent = |cause: &Found| {
+            let own = cause.parts.iter().zip(covariances.by_ref());
+            let of = |(part, covariance): (&Part, DMatrix<f64>)| {
+                let (moved, covariance) = match part {
+                    Part::Parameter(p) => {
+                        (DVector::from_element(1, now.theta[*p] - null.theta[*p]), covariance)
+                    }
+                    Part::Law { law, .. } => {
+                        let own = law.coefficients();
+                        let value = |i: usize, _| law.values[own[i]];
+                        (
+                            DVector::from_fn(own.len(), value),
+                            covariance.select_rows(&own).select_columns(&own),
+                        )
+                    }
+                };
+                let wald = covariance.cholesky().map(|factor| moved.dot(&factor.solve(&moved)));
+                // what has no coefficient, or no covariance, cannot be judged so
+                wald.filter(|_| !moved.is_empty()).unwrap_or(f64::INFINITY)
+            };
+            let numbers = Hypothesis { parts: cause.parts.clone(), ..now.clone() }.numbers();
+            0.5 * own.map(of).fold(0.0, f64::max) - each * numbers as f64 - cause.choice
+        };
+        let apparent: Vec<f64> = found.iter().map(apparent).collect();
+        let near = |&i: &usize| apparent[i] < MISSING;
+        let least =
+            (0..found.len()).filter(near).min_by(|&a, &b| apparent[a].total_cmp(&apparent[b]))?;
+        let rest = self.less(found, (now, null), least, f64::NEG_INFINITY)?;
+        let merit = self.merit(&rest, found) + found[least].choice;
+        (self.merit(now, found) - merit < MISSING).then_some((least, rest))
     }
 
     /// The cause that held samples speak against most, and the rest; `fit` does not see these samples.

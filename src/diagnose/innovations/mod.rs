@@ -17,6 +17,7 @@
 
 mod compete;
 mod conversion;
+mod made;
 mod missing;
 mod of_library;
 mod reconsidered;

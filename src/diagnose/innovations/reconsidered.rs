@@ -1,11 +1,12 @@
 //! An answer of free runs, reconsidered where the records call for noise inside the plant.
 
-use std::cell::{Cell, OnceCell};
+use std::cell::Cell;
 
 use crate::likelihood::{Explanation, Given, Noise, NoiseModel, Predictor};
 
 use super::compete::{CLEARLY, Rivals, extended_by, left, predictor};
 use super::conversion::{carried_over, finished};
+use super::made::Made;
 use super::unforeseen::{foreseen, leaves_noise_inside, unforeseen};
 use crate::candidates::candidate::Wire;
 use crate::candidates::library::{Allowed, library};
@@ -32,9 +33,6 @@ const BEGUN_WITH: usize = 12;
 
 /// An answer and what it was weighed against.
 type Answer = (Finished, Option<Finished>);
-/// What a search by innovations from nothing finds, once it was asked: whatever the answer, it is the same.
-type FromNothing = OnceCell<Option<Explanation>>;
-
 /// Searches by free runs, and by innovations where the records call for it; the chosen track comes
 /// first.
 pub(crate) fn search(
@@ -44,7 +42,7 @@ pub(crate) fn search(
     watch: &dyn Watch,
 ) -> Result<Answer, DiagnoseError> {
     let (may_ask, start) = (may_be_asked(prepared, allowed, most), prepared.start.clone());
-    let (is_disturbed, from_nothing) = (Cell::new(false), FromNothing::new());
+    let (is_disturbed, made) = (Cell::new(false), Made::default());
     let breaks_off = |problem: &Problem<'_>, nominal: &Nominal, model: &Model| {
         let is = may_ask && leaves_noise_inside((problem, nominal, &start), model).unwrap_or(false);
         is_disturbed.set(is);
@@ -52,7 +50,7 @@ pub(crate) fn search(
     };
     let mut answer = prepared.search_unless(allowed, most, &breaks_off, watch)?;
     if is_disturbed.get() && !watch.stopped() {
-        let found = by_innovations(prepared, (allowed, most), &answer, &from_nothing, watch);
+        let found = by_innovations(prepared, (allowed, most), &answer, &made, watch);
         let is_all = |found: &Finished| {
             found.causes() > 0 && is_called_for(prepared, allowed, found).unwrap_or(false)
         };
@@ -63,7 +61,7 @@ pub(crate) fn search(
             None => answer = prepared.search(allowed, most, watch)?,
         }
     }
-    Ok(reconsidered(prepared, (allowed, most), answer, &from_nothing, watch))
+    Ok(reconsidered(prepared, (allowed, most), answer, &made, watch))
 }
 
 /// Whether the model that is diagnosed forgets where it starts within its records.
@@ -123,14 +121,14 @@ fn reconsidered(
     prepared: &Prepared<'_>,
     (allowed, most): (&Allowed, usize),
     answer: Finished,
-    from_nothing: &FromNothing,
+    made: &Made,
     watch: &dyn Watch,
 ) -> Answer {
     if !may_be_asked(prepared, allowed, most) || watch.stopped() || is_white(prepared, &answer.y) {
         return (answer, None);
     }
     watch.report(0.9, "asking for noise inside the plant");
-    match by_innovations(prepared, (allowed, most), &answer, from_nothing, watch) {
+    match by_innovations(prepared, (allowed, most), &answer, made, watch) {
         Some(better) => (better, Some(answer)),
         None => (answer, None),
     }
@@ -150,7 +148,7 @@ fn by_innovations(
     prepared: &Prepared<'_>,
     (allowed, most): (&Allowed, usize),
     answer: &Finished,
-    from_nothing: &FromNothing,
+    made: &Made,
     watch: &dyn Watch,
 ) -> Option<Finished> {
     let problem = &prepared.problem;
@@ -179,7 +177,8 @@ fn by_innovations(
         own.dependence = depends(prepared, (&base, found), &own)?;
         Some(own)
     };
-    let from_answer = given(problem, answer).and_then(|given| explained(&given, None));
+    let from_answer = given(problem, answer)
+        .and_then(|given| made.from_answer(&given, || explained(&given, None)));
     let gone_on = from_answer.as_ref().filter(|found| is_better(found)).and_then(concluded);
     // an answer that goes on to leave nothing that follows from inputs is all, unless noise inside makes most of
     // what its simulation leaves; else each search may end in a place of its own
@@ -193,7 +192,7 @@ fn by_innovations(
         false => {
             let rival = from_answer.as_ref().map(|found| found.merit);
             let begun = Given { rival, ..Given::default() };
-            from_nothing.get_or_init(|| explained(&begun, noise)).clone()
+            made.from_nothing(|| explained(&begun, noise))
         }
     };
     let none = is_bare && from_nothing.as_ref().is_some_and(|found| found.causes.is_empty());

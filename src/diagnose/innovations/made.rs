@@ -1,0 +1,46 @@
+//! Searches by innovations that were made: whatever an answer weighs, one that begins with the same causes ends
+//! where it ended.
+
+use std::cell::{OnceCell, RefCell};
+
+use crate::likelihood::{Explanation, Given};
+use crate::system::Placed;
+
+/// Causes and parameters by name.
+type Names = Vec<(String, String, Option<String>)>;
+
+/// What they found.
+#[derive(Default)]
+pub(super) struct Made {
+    from_nothing: OnceCell<Option<Explanation>>,
+    from_answers: RefCell<Vec<(Names, Option<Explanation>)>>,
+}
+
+impl Made {
+    /// What a search from nothing finds.
+    pub fn from_nothing(
+        &self,
+        search: impl FnOnce() -> Option<Explanation>,
+    ) -> Option<Explanation> {
+        self.from_nothing.get_or_init(search).clone()
+    }
+
+    /// What a search from given causes finds.
+    pub fn from_answer(
+        &self,
+        given: &Given,
+        search: impl FnOnce() -> Option<Explanation>,
+    ) -> Option<Explanation> {
+        let law =
+            |law: &Placed| (law.effect.typetag_name().into(), law.into.clone(), law.of.clone());
+        let moved = given.parameters.iter().map(|(p, _)| (String::new(), p.to_string(), None));
+        let names: Names = given.laws.iter().map(law).chain(moved).collect();
+        let is_made = |made: &&(Names, Option<Explanation>)| made.0 == names;
+        let made = self.from_answers.borrow().iter().find(is_made).map(|made| made.1.clone());
+        made.unwrap_or_else(|| {
+            let found = search();
+            self.from_answers.borrow_mut().push((names, found.clone()));
+            found
+        })
+    }
+}
