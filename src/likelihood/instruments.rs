@@ -1,21 +1,23 @@
-//! Exchanges: a lag or a delay of another instrument.
+//! Exchanges: a lag, a delay, a wrong scale or an offset of another instrument.
 //!
-//! In a linear plant a lag before it does what one behind it does; what enters between the two tells them
-//! apart, and only once the other causes are there. Each is tried at every other instrument, the noise being
-//! chosen anew (behind a lag it is white that was coloured before it); the likelier stays, and those that are
-//! as likely are said.
+//! In a linear plant a lag before it does what one behind it does, and so does a scale; what enters between the two
+//! tells them apart, and only once the other causes are there. Each is tried at every other instrument, the noise
+//! being chosen anew (behind a lag it is white that was coloured before it, behind a scale it is larger); the
+//! likelier stays, and those that are as likely are said.
 //! Source: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.4 (sequential replacement).
 
 use rayon::prelude::*;
 
 use super::follow::Wanted;
-use super::found::{Found, joined};
+use super::found::{Found, dealt, joined};
 use super::hypothesis::{Hypothesis, Part};
 use super::laws::Law;
+use super::memory::remembers;
 use super::predictor::Predictor;
 use super::screen::Spotted;
+use super::tangent::Site;
 use super::weigh::Weighed;
-use crate::effect::Mechanism;
+use crate::effect::Needs;
 
 /// A cause at another instrument: what it gains, and all causes after it.
 pub(super) struct Tried {
@@ -26,7 +28,7 @@ pub(super) struct Tried {
 }
 
 impl Predictor {
-    /// The causes after the best move of a lag or a delay to another instrument; where none is more probable,
+    /// The causes after the best move of a law to another instrument; where none is more probable,
     /// all moves, none of them made.
     pub(super) fn moved_between_instruments(
         &self,
@@ -43,7 +45,7 @@ impl Predictor {
         None
     }
 
-    /// Notes which other instruments may have a lag or a delay as well, with probabilities.
+    /// Notes which other instruments may have a law as well, with probabilities.
     pub(super) fn note_instruments(&self, found: &mut [Found], tried: &[Tried]) {
         for (i, cause) in found.iter_mut().enumerate() {
             let own = || tried.iter().filter(|t| t.cause == i);
@@ -67,12 +69,14 @@ impl Predictor {
         now: &mut Hypothesis,
         stop: &(dyn Fn() -> bool + Sync),
     ) -> Vec<Tried> {
-        let late = |(i, cause): (usize, &Found)| match &cause.parts[..] {
-            [Part::Law { law, .. }] if is_late(law) => Some((i, law.clone())),
+        let own = |(i, cause): (usize, &Found)| match &cause.parts[..] {
+            [Part::Law { law, .. }] if law.card.properties.of_an_instrument => {
+                Some((i, law.clone()))
+            }
             _ => None,
         };
-        let late: Vec<(usize, Box<Law>)> = found.iter().enumerate().filter_map(late).collect();
-        if late.is_empty() {
+        let own: Vec<(usize, Box<Law>)> = found.iter().enumerate().filter_map(own).collect();
+        if own.is_empty() {
             return vec![];
         }
         let wanted = Wanted { theta: true, seen: true, gate: Some(self.gate()) };
@@ -80,11 +84,14 @@ impl Predictor {
         let Ok(spots) = spots else { return vec![] };
         let is_free = |spot: &&Spotted| !found.iter().any(|cause| cause.place == spot.place());
         let mut asked = vec![];
-        for (i, law) in &late {
-            for spot in spots.iter().filter(is_free) {
-                let same = spot.remembering.iter().find(|other| other.name == law.name);
+        for (i, law) in &own {
+            let from = found[*i].place.0;
+            for spot in spots.iter().filter(is_free).filter(|spot| is_across(law, from, spot.site))
+            {
+                let mut all = spot.laws.iter().chain(&spot.remembering);
+                let same = all.find(|other| other.name == law.name);
                 asked.extend(same.map(|same| {
-                    let law = Box::new(Law { values: law.values.clone(), ..same.clone() });
+                    let law = Box::new(begun(law, same));
                     (*i, spot.place(), Part::Law { site: spot.site, source: spot.source, law })
                 }));
             }
@@ -104,10 +111,15 @@ impl Predictor {
             if stop() {
                 return None;
             }
+            let has_same_number = matches!(&part, Part::Law { law, .. } if has_same_number(law));
             let mut causes = found.to_vec();
             let choice = causes[cause].choice;
             causes[cause] = Found { parts: vec![part], choice, ..self.as_cause(place) };
-            let moved = Hypothesis { parts: joined(&causes), ..now.clone() };
+            let mut moved = Hypothesis { parts: joined(&causes), ..now.clone() };
+            if !has_same_number {
+                moved = self.raced(moved.parts, &now.theta, &now.noise)?;
+                dealt(&mut causes, &moved);
+            }
             let fitted = self.under_noise_anew(&mut causes, &moved)?;
             let gain = self.merit(&fitted, &causes) - value;
             causes[cause].weighed_against_one(gain);
@@ -124,7 +136,20 @@ impl Predictor {
     }
 }
 
-/// Whether a law makes a signal late, by so many s whatever the signal is.
-fn is_late(law: &Law) -> bool {
-    matches!(law.card.mechanism, Mechanism::Lag | Mechanism::Delay)
+/// Whether a survey, which holds the noise, does not compare a law at two sites: what is before a plant with what is
+/// behind it, and what remembers.
+fn is_across(law: &Law, from: Site, to: Site) -> bool {
+    let is_output = |site: Site| matches!(site, Site::Output(_));
+    remembers(&law.card) || is_output(from) || is_output(to)
+}
+
+/// A law at another instrument, where a fit of it begins.
+fn begun(law: &Law, there: &Law) -> Law {
+    let values = if has_same_number(law) { &law.values } else { &there.values };
+    Law { values: values.clone(), ..there.clone() }
+}
+
+/// Whether a law has the same number at another instrument: it is a factor or in s, not in the unit of its place.
+fn has_same_number(law: &Law) -> bool {
+    law.card.needs != Needs::Nothing
 }
