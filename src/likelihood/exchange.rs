@@ -110,6 +110,7 @@ impl Predictor {
             others: vec![],
             rivals: vec![],
             chosen_again: true,
+            given: false,
             disguised: vec![],
         }
     }

@@ -5,6 +5,7 @@
 //! repeat  the most probable place and its laws, given the causes before (`places.rs`)
 //!         all causes fitted together, the noise anew
 //! until nothing more is probable, fitted together with the others too (`joint.rs`)
+//! a given law is weighed as one that is found (`given_weighed.rs`), and
 //! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), a lag or a delay moves to another
 //! instrument (`instruments.rs`), the pole of a slow force is chosen anew, with a constant or without
 //! (`steady.rs`), and so is the law of a place, the other causes being there (`joint.rs`), an improbable error of
@@ -66,7 +67,8 @@ impl Predictor {
             }
             // laws that give way to each other in turn end where they were before
             let mut exchanged = || {
-                fit.exchanged(&mut found, &mut now, stop)
+                fit.given_weighed(&mut found, &mut now, stop)
+                    || fit.exchanged(&mut found, &mut now, stop)
                     || fit
                         .moved_between_instruments(&mut found, &mut now, stop)
                         .map(|tried| elsewhere = tried)

@@ -25,6 +25,8 @@ pub(crate) struct Found {
     /// Other sets of laws of its place.
     pub rivals: Vec<Weighed>,
     pub chosen_again: bool,
+    /// It was given, and is not weighed yet.
+    pub given: bool,
     /// Laws that may be a parameter in disguise: number of the part, parameter, probability.
     pub disguised: Vec<(usize, usize, f64)>,
 }
@@ -116,6 +118,7 @@ impl Predictor {
             others: others.map(|other| self.fitted_laws(other.clone())).collect(),
             rivals: rivals(survey, set),
             chosen_again: false,
+            given: false,
             disguised: vec![],
         }
     }

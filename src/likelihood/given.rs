@@ -128,6 +128,12 @@ impl Predictor {
         let choice = (self.places_count() as f64).ln() + (laws.len() as f64).ln();
         let parts = vec![Part::Law { site, source, law: Box::new(law) }];
         // the place may have another law, or more of them, than is given
-        Some(Found { parts, choice, chosen_again: false, ..self.as_cause((site, source)) })
+        Some(Found {
+            parts,
+            choice,
+            chosen_again: false,
+            given: true,
+            ..self.as_cause((site, source))
+        })
     }
 }

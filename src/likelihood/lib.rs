@@ -30,6 +30,7 @@ mod follow;
 mod forgetting;
 mod found;
 mod given;
+mod given_weighed;
 mod held_out;
 mod hypothesis;
 mod instruments;

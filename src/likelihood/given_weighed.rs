@@ -1,0 +1,88 @@
+//! Exchanges: a given cause is weighed as all others are.
+//!
+//! A law that comes from a search by simulations was chosen where noise inside the plant was coloured noise at the
+//! sensors. Each is taken out once, with all causes there, the others are fitted anew, and a survey says what else
+//! may stand in its place, anywhere; the likelier stays, with the probabilities of that survey.
+//! Source: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.4 (sequential replacement).
+
+use super::found::{Found, joined};
+use super::hypothesis::{Hypothesis, names};
+use super::places::Survey;
+use super::predictor::Predictor;
+use super::ranked::MISSING;
+use super::weigh::{Weighed, plainest};
+
+impl Predictor {
+    /// Weighs the given causes that were not weighed yet; whether another stands in the place of one.
+    pub(super) fn given_weighed(
+        &self,
+        found: &mut Vec<Found>,
+        now: &mut Hypothesis,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> bool {
+        let mut is_other = false;
+        while let Some(at) = found.iter().position(|cause| cause.given).filter(|_| !stop()) {
+            found[at].given = false;
+            let Some(survey) = self.survey_without(found, now, at, stop) else { continue };
+            is_other |= self.replaced((found, now), at, &survey);
+        }
+        is_other
+    }
+
+    /// What may stand in the place of a cause, the others fitted without it.
+    fn survey_without(
+        &self,
+        found: &[Found],
+        now: &Hypothesis,
+        at: usize,
+        stop: &(dyn Fn() -> bool + Sync),
+    ) -> Option<Survey> {
+        let mut others = found.to_vec();
+        others.remove(at);
+        let rest = match others.is_empty() {
+            true => Hypothesis { parts: vec![], theta: self.model.theta.clone(), ..now.clone() },
+            false => self.fit_all(&mut others, &now.theta, &now.noise)?,
+        };
+        self.holding(&rest).ok()?.survey(&rest.noise, None, stop).ok()
+    }
+
+    /// The best of a survey in the place of a cause, where that is more probable; else the cause as it is, with its
+    /// probability against what the survey found.
+    fn replaced(
+        &self,
+        (found, now): (&mut Vec<Found>, &mut Hypothesis),
+        at: usize,
+        survey: &Survey,
+    ) -> bool {
+        let own = names(&found[at].parts);
+        let place = found[at].place;
+        let is_own = |set: &&Weighed| set.place == place && names(&set.hypothesis.parts) == own;
+        let is_elsewhere = |cause: &Found| found.iter().any(|f| f.place == cause.place);
+        let value = self.merit(now, found);
+        let best = plainest(&survey.sets).filter(|set| set.log_odds > MISSING);
+        let mut gain = f64::NEG_INFINITY;
+        if let Some(set) = best.filter(|set| !is_own(set)) {
+            let cause = self.of(survey, set);
+            let mut all = found.clone();
+            let is_free = cause.place == place || !is_elsewhere(&cause);
+            all[at] = cause;
+            let begun = Hypothesis { parts: joined(&all), ..set.hypothesis.clone() };
+            let fitted = self.fit_all_raced(&mut all, &begun, value).filter(|_| is_free);
+            if let Some(fitted) = fitted {
+                gain = self.merit(&fitted, &all) - value;
+                if gain > 0.0 {
+                    (*found, *now) = (all, fitted);
+                    return true;
+                }
+            }
+        }
+        match survey.sets.iter().find(is_own) {
+            Some(set) => {
+                let Found { law, at_place, others, rivals, .. } = self.of(survey, set);
+                found[at] = Found { law, at_place, others, rivals, ..found[at].clone() };
+            }
+            None => found[at].weighed_against_one(-gain),
+        }
+        false
+    }
+}
