@@ -18,7 +18,7 @@ pub(super) struct Made {
 
 impl Made {
     /// What a search from nothing finds.
-    pub fn from_nothing(
+    pub fn begun_with_nothing(
         &self,
         search: impl FnOnce() -> Option<Explanation>,
     ) -> Option<Explanation> {
@@ -26,7 +26,7 @@ impl Made {
     }
 
     /// What a search from given causes finds.
-    pub fn from_answer(
+    pub fn begun_with(
         &self,
         given: &Given,
         search: impl FnOnce() -> Option<Explanation>,

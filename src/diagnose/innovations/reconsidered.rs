@@ -178,7 +178,7 @@ fn by_innovations(
         Some(own)
     };
     let from_answer = given(problem, answer)
-        .and_then(|given| made.from_answer(&given, || explained(&given, None)));
+        .and_then(|given| made.begun_with(&given, || explained(&given, None)));
     let gone_on = from_answer.as_ref().filter(|found| is_better(found)).and_then(concluded);
     // an answer that goes on to leave nothing that follows from inputs is all, unless noise inside makes most of
     // what its simulation leaves; else each search may end in a place of its own
@@ -192,7 +192,7 @@ fn by_innovations(
         false => {
             let rival = from_answer.as_ref().map(|found| found.merit);
             let begun = Given { rival, ..Given::default() };
-            made.from_nothing(|| explained(&begun, noise))
+            made.begun_with_nothing(|| explained(&begun, noise))
         }
     };
     let none = is_bare && from_nothing.as_ref().is_some_and(|found| found.causes.is_empty());
