@@ -54,27 +54,24 @@ impl Predictor {
         at: usize,
         survey: &Survey,
     ) -> bool {
-        let own = names(&found[at].parts);
-        let place = found[at].place;
+        let (own, place) = (names(&found[at].parts), found[at].place);
         let is_own = |set: &&Weighed| set.place == place && names(&set.hypothesis.parts) == own;
-        let is_elsewhere = |cause: &Found| found.iter().any(|f| f.place == cause.place);
+        let is_taken = |set: &Weighed| {
+            set.place != place && found.iter().any(|other| other.place == set.place)
+        };
+        let may_replace = |set: &&Weighed| set.log_odds > MISSING && !is_own(set) && !is_taken(set);
         let value = self.merit(now, found);
-        let best = plainest(&survey.sets).filter(|set| set.log_odds > MISSING);
-        let mut gain = f64::NEG_INFINITY;
-        if let Some(set) = best.filter(|set| !is_own(set)) {
-            let cause = self.of(survey, set);
+        let fitted = plainest(&survey.sets).filter(may_replace).and_then(|set| {
             let mut all = found.clone();
-            let is_free = cause.place == place || !is_elsewhere(&cause);
-            all[at] = cause;
+            all[at] = self.of(survey, set);
             let begun = Hypothesis { parts: joined(&all), ..set.hypothesis.clone() };
-            let fitted = self.fit_all_raced(&mut all, &begun, value).filter(|_| is_free);
-            if let Some(fitted) = fitted {
-                gain = self.merit(&fitted, &all) - value;
-                if gain > 0.0 {
-                    (*found, *now) = (all, fitted);
-                    return true;
-                }
-            }
+            let fitted = self.fit_all_raced(&mut all, &begun, value)?;
+            Some((self.merit(&fitted, &all) - value, all, fitted))
+        });
+        let gain = fitted.as_ref().map_or(f64::NEG_INFINITY, |(gain, ..)| *gain);
+        if let Some((_, all, other)) = fitted.filter(|_| gain > 0.0) {
+            (*found, *now) = (all, other);
+            return true;
         }
         match survey.sets.iter().find(is_own) {
             Some(set) => {
