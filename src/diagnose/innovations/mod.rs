@@ -8,7 +8,7 @@
 //! free run with coloured noise as likely as a predictor with noise inside: keep it
 //! causes <- by the innovations of the predictor (`likelihood::Predictor::explain`), from the answer's causes on; unless
 //!     they leave nothing that follows from inputs, and noise inside makes no more than a part of what the answer's
-//!     simulation leaves: also from nothing on, and the more probable of the two
+//!     simulation leaves: also from nothing on, and the more probable of the two (what is far behind is given up)
 //! they are not clearly less probable than the answer under either noise: they replace it
 //! ```
 //!

@@ -33,6 +33,7 @@ const BEGUN_WITH: usize = 12;
 
 /// An answer and what it was weighed against.
 type Answer = (Finished, Option<Finished>);
+
 /// Searches by free runs, and by innovations where the records call for it; the chosen track comes
 /// first.
 pub(crate) fn search(
