@@ -1,8 +1,9 @@
 //! Friction that remembers where it turned, in a plant that is disturbed.
 
 use lacuna::data::Record;
-use lacuna::diagnose::{Diagnosis, Verdict};
+use lacuna::diagnose::Diagnosis;
 
+use super::is_the_one_cause;
 use super::plants::{Sizes, excitation, simulate_by, system};
 
 /// A carriage that a motor drives.
@@ -40,13 +41,6 @@ fn hysteresis_is_found_beside_random_forces_in_a_loop() {
         let record = Record::new(0.02).input("force", force).unwrap();
         let record = record.output("position", acted.outputs[0].values.clone()).unwrap();
         let finding = Diagnosis::of(&system(CARRIAGE)).run(&[record], None, &()).unwrap();
-        let named: Vec<_> =
-            finding.causes.iter().map(|cause| (&cause.effect[..], &cause.into[..])).collect();
-        assert_eq!(named, [("hysteresis", "on_carriage")], "{seed}: {:?}", finding.causes);
-        assert_eq!(finding.verdict, Verdict::CausesFound);
-        let found = &finding.causes[0].parameters[0];
-        let error = found.std_error.unwrap();
-        let off = (found.value - STIFFNESS).abs();
-        assert!(off < 4.0 * error && error < 0.2 * STIFFNESS, "{seed}: {} +- {error}", found.value);
+        is_the_one_cause(&finding, ("hysteresis", "on_carriage"), (STIFFNESS, 0.2));
     }
 }

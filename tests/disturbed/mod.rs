@@ -17,7 +17,7 @@ mod sluggish;
 mod tight_loop;
 
 use lacuna::data::{Record, Signal};
-use lacuna::diagnose::{Diagnosis, Finding};
+use lacuna::diagnose::{Diagnosis, Finding, Verdict};
 use lacuna::system::System;
 
 use self::more::{FAN, VESSELS};
@@ -48,6 +48,19 @@ struct Case {
     into: &'static str,
     of: &'static str,
     table: fn(f64) -> String,
+}
+
+/// Asserts that one cause is named, its effect and place, and that the interval of its first number, whose standard
+/// error is below a share of the true value, holds that value.
+fn is_the_one_cause(finding: &Finding, cause: (&str, &str), (value, share): (f64, f64)) {
+    let named: Vec<_> =
+        finding.causes.iter().map(|cause| (&cause.effect[..], &cause.into[..])).collect();
+    assert_eq!(named, [cause], "{:?}", finding.causes);
+    assert_eq!(finding.verdict, Verdict::CausesFound);
+    let found = &finding.causes[0].parameters[0];
+    let error = found.std_error.unwrap();
+    let off = (found.value - value).abs();
+    assert!(off < 4.0 * error && error < share * value, "{} +- {error}", found.value);
 }
 
 fn friction(level: f64, width: f64) -> String {

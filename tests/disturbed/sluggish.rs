@@ -1,8 +1,9 @@
 //! Instruments that remember, in a plant that is disturbed.
 
 use lacuna::data::Record;
-use lacuna::diagnose::{Diagnosis, Verdict};
+use lacuna::diagnose::Diagnosis;
 
+use super::is_the_one_cause;
 use super::plants::{Sizes, excitation, simulate_by, system};
 
 /// A body that turns, with its rate and its angle measured.
@@ -45,14 +46,7 @@ fn a_slow_actuator_is_found_beside_gusts_in_a_loop() {
             record = record.output(&output.name, output.values.clone()).unwrap();
         }
         let finding = Diagnosis::of(&system(BODY)).run(&[record], None, &()).unwrap();
-        let named: Vec<_> =
-            finding.causes.iter().map(|cause| (&cause.effect[..], &cause.into[..])).collect();
-        assert_eq!(named, [(effect, "torque")], "{:?}", finding.causes);
-        assert_eq!(finding.verdict, Verdict::CausesFound);
-        let found = &finding.causes[0].parameters[0];
-        let error = found.std_error.unwrap();
-        let off = (found.value - value).abs();
-        assert!(off < 4.0 * error && error < 0.1 * value, "{} +- {error}", found.value);
+        is_the_one_cause(&finding, (effect, "torque"), (value, 0.1));
     }
 }
 
@@ -90,12 +84,6 @@ fn a_slow_sensor_is_told_from_a_slow_actuator_by_what_disturbs_the_plant() {
         let record = Record::new(2.0).input("power", power).unwrap();
         let record = record.output("temperature", acted.outputs[0].values.clone()).unwrap();
         let finding = Diagnosis::of(&system(OVEN)).run(&[record], None, &()).unwrap();
-        let named: Vec<_> =
-            finding.causes.iter().map(|cause| (&cause.effect[..], &cause.into[..])).collect();
-        assert_eq!(named, [("lag", "temperature")], "{seed}: {:?}", finding.causes);
-        let found = &finding.causes[0].parameters[0];
-        let error = found.std_error.unwrap();
-        let off = (found.value - LAG).abs();
-        assert!(off < 4.0 * error && error < 0.1 * LAG, "{seed}: {} +- {error}", found.value);
+        is_the_one_cause(&finding, ("lag", "temperature"), (LAG, 0.1));
     }
 }

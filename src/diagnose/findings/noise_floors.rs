@@ -67,8 +67,8 @@ impl Context<'_, '_> {
         before: &Scored,
         (off, drives): (&[Vec<f64>], &[&[f64]]),
     ) -> Vec<Option<Floor>> {
-        let (share, first_lag) =
-            (self.share(chosen), |o: usize| self.nominal.first_lag(self.problem, o));
+        let share = self.share(chosen);
+        let first_lag = |o: usize| self.nominal.first_lag(self.problem, o);
         let inputs = data.inputs(drives.len());
         let ends = test.begins.iter().skip(1).copied();
         let count = test.measured.iter().map(Vec::len).max().unwrap_or(0);

@@ -1,7 +1,7 @@
-//! Searches by innovations that were made: whatever an answer weighs, one that begins with the same causes ends
-//! where it ended.
+//! Searches by innovations that were made: whatever answer they are weighed against, one that begins with the same
+//! causes ends where it ended.
 
-use std::cell::{OnceCell, RefCell};
+use std::cell::RefCell;
 
 use crate::likelihood::{Explanation, Given};
 use crate::system::Placed;
@@ -9,22 +9,11 @@ use crate::system::Placed;
 /// Causes and parameters by name.
 type Names = Vec<(String, String, Option<String>)>;
 
-/// What they found.
+/// What was found, by the causes that a search began with; none of them: from nothing.
 #[derive(Default)]
-pub(super) struct Made {
-    from_nothing: OnceCell<Option<Explanation>>,
-    from_answers: RefCell<Vec<(Names, Option<Explanation>)>>,
-}
+pub(super) struct Made(RefCell<Vec<(Names, Option<Explanation>)>>);
 
 impl Made {
-    /// What a search from nothing finds.
-    pub fn begun_with_nothing(
-        &self,
-        search: impl FnOnce() -> Option<Explanation>,
-    ) -> Option<Explanation> {
-        self.from_nothing.get_or_init(search).clone()
-    }
-
     /// What a search from given causes finds.
     pub fn begun_with(
         &self,
@@ -36,10 +25,10 @@ impl Made {
         let moved = given.parameters.iter().map(|(p, _)| (String::new(), p.to_string(), None));
         let names: Names = given.laws.iter().map(law).chain(moved).collect();
         let is_made = |made: &&(Names, Option<Explanation>)| made.0 == names;
-        let made = self.from_answers.borrow().iter().find(is_made).map(|made| made.1.clone());
+        let made = self.0.borrow().iter().find(is_made).map(|made| made.1.clone());
         made.unwrap_or_else(|| {
             let found = search();
-            self.from_answers.borrow_mut().push((names, found.clone()));
+            self.0.borrow_mut().push((names, found.clone()));
             found
         })
     }

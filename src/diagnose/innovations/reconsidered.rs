@@ -193,7 +193,7 @@ fn by_innovations(
         false => {
             let rival = from_answer.as_ref().map(|found| found.merit);
             let begun = Given { rival, ..Given::default() };
-            made.begun_with_nothing(|| explained(&begun, noise))
+            made.begun_with(&begun, || explained(&begun, noise))
         }
     };
     let none = is_bare && from_nothing.as_ref().is_some_and(|found| found.causes.is_empty());

@@ -45,6 +45,8 @@ pub(crate) struct Nominal {
     /// What residuals are regressed on, once somebody asks.
     /// By the sample from which on inputs count.
     features: [OnceLock<Option<Features>>; 2],
+    /// That sample of every output.
+    first_lags: OnceLock<Vec<usize>>,
 }
 
 impl Nominal {
@@ -110,6 +112,7 @@ impl Nominal {
             count: known,
             sampling_time: dt,
             features: [OnceLock::new(), OnceLock::new()],
+            first_lags: OnceLock::new(),
         })
     }
 
@@ -159,8 +162,11 @@ impl Nominal {
     /// and a controller that reads the output makes it follow the noise.
     pub fn first_lag(&self, problem: &Problem<'_>, output: usize) -> usize {
         let held = problem.system.sampling.hold == Hold::Zero;
-        let reaches = |input| self.moves_at_once(problem, input, (Ask::Output, output));
-        usize::from(held && !(0..self.sizes.u).any(reaches))
+        let of = |o| {
+            let reaches = |input| self.moves_at_once(problem, input, (Ask::Output, o));
+            usize::from(held && !(0..self.sizes.u).any(reaches))
+        };
+        self.first_lags.get_or_init(|| (0..self.sizes.y).map(of).collect())[output]
     }
 
     /// The same for what an entry of the table of sources tells, `first` being that of inputs.
