@@ -108,6 +108,7 @@ impl<'a, 'b> Tracks<'a, 'b> {
             dependence,
             undetermined: vec![],
             inside: None,
+            doubt: 0.0,
         };
         let mut moved = finished.went(&self.problem.base.signals);
         moved.retain(Moved::is_far);

@@ -23,7 +23,6 @@ use super::hypothesis::{Hypothesis, Part};
 use super::predictor::Predictor;
 use super::racing::RACED;
 use super::ranked::MISSING;
-use super::tangent::Site;
 
 impl Predictor {
     /// The hypothesis without one of its causes, fitted anew; to the end only where it may come near `best`, a merit.
@@ -40,9 +39,7 @@ impl Predictor {
         let mut rest = found.to_vec();
         let gone = rest.remove(at);
         let mut theta = now.theta.clone();
-        if let Site::Parameter(p) = gone.place.0 {
-            theta[p] = null.theta[p];
-        }
+        gone.moves().for_each(|p| theta[p] = null.theta[p]);
         let fitted = self.fit_all_raced(&mut rest, &Hypothesis { theta, ..now.clone() }, best)?;
         if self.merit(&fitted, &rest) > best - RACED {
             return Some(fitted);
@@ -116,7 +113,12 @@ impl Predictor {
                 // what has no coefficient, or no covariance, cannot be judged so
                 wald.filter(|_| !moved.is_empty()).unwrap_or(f64::INFINITY)
             };
-            let numbers = Hypothesis { parts: cause.parts.clone(), ..now.clone() }.numbers();
+            if cause.is_all_parameters() {
+                return f64::INFINITY;
+            }
+            let is_law = |part: &&Part| matches!(part, Part::Law { .. });
+            let laws: Vec<Part> = cause.parts.iter().filter(is_law).cloned().collect();
+            let numbers = Hypothesis { parts: laws, ..now.clone() }.numbers();
             0.5 * own.map(of).fold(0.0, f64::max) - each * numbers as f64 - cause.choice
         };
         let apparent: Vec<f64> = found.iter().map(apparent).collect();

@@ -10,7 +10,9 @@ use rayon::prelude::*;
 use super::found::Found;
 use super::hypothesis::{Hypothesis, Part};
 use super::predictor::Predictor;
+use super::ranked::FittedLaws;
 use super::tangent::Site;
+use super::weigh::AS_GOOD;
 
 /// A law of a cause by a parameter: what it gains, and all causes after it.
 struct Exchange {
@@ -43,7 +45,8 @@ impl Predictor {
         stop: &(dyn Fn() -> bool + Sync),
     ) -> bool {
         let tried = self.exchanges(found, now, stop);
-        match tried.iter().filter(|e| e.gain > 0.0).max_by(|a, b| a.gain.total_cmp(&b.gain)) {
+        // a parameter is plainer than a law
+        match tried.iter().filter(|e| e.gain > -AS_GOOD).max_by(|a, b| a.gain.total_cmp(&b.gain)) {
             Some(best) => {
                 (*found, *now) = (best.causes.clone(), best.fitted.clone());
                 true
@@ -63,11 +66,8 @@ impl Predictor {
     ) -> Vec<Exchange> {
         let is_moved =
             |p: usize| now.parts.iter().any(|part| matches!(part, Part::Parameter(q) if *q == p));
-        let signals = &self.model.plan.signals.parameters;
-        let free: Vec<usize> = (0..signals.len())
-            .filter(|&p| !signals[p].fixed && self.scope.parameter(&signals[p].name))
-            .filter(|&p| !is_moved(p))
-            .collect();
+        let mut free = self.free_parameters();
+        free.retain(|&p| !is_moved(p));
         let plain = |part: &Part| matches!(part, Part::Law { law, .. } if law.free.len() == 1);
         let mut tried = vec![];
         for (i, cause) in found.iter().enumerate() {
@@ -81,7 +81,7 @@ impl Predictor {
                 return None;
             }
             let mut causes = found.to_vec();
-            causes[cause].parts.remove(part);
+            let gone = causes[cause].remove(part);
             if causes[cause].parts.is_empty() {
                 causes.remove(cause);
             }
@@ -92,6 +92,14 @@ impl Predictor {
             // against the law that it was exchanged for
             if let Some(last) = causes.last_mut() {
                 last.weighed_against_one(gain);
+                last.others = vec![FittedLaws {
+                    laws: self.placed(&[gone]),
+                    parameters: vec![],
+                    log_likelihood: now.log_likelihood,
+                    noise: now.noise.clone(),
+                    probability: 1.0 - last.law,
+                    log_odds: -gain,
+                }];
             }
             Some(Exchange { cause, part, parameter, gain, causes, fitted })
         };
@@ -104,6 +112,7 @@ impl Predictor {
             place,
             parts: vec![],
             choice: (self.places_count() as f64).ln(),
+            among: 1.0,
             log_odds: 0.0,
             law: 1.0,
             at_place: 1.0,

@@ -7,7 +7,7 @@
 //! until nothing more is probable, fitted together with the others too (`joint.rs`)
 //! a given law is weighed as one that is found (`given_weighed.rs`), and
 //! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), a lag or a delay moves to another
-//! instrument (`instruments.rs`), the pole of a slow force is chosen anew, with a constant or without
+//! instrument (`instruments.rs`), all free parameters are one cause (`together.rs`), the pole of a slow force is chosen anew, with a constant or without
 //! (`steady.rs`), and so is the law of a place, the other causes being there (`joint.rs`), an improbable error of
 //! a parameter is taken back (`taken_back.rs`); then more causes
 //! causes that are not needed beside the others are left out, those that held samples speak against withdrawn
@@ -73,6 +73,7 @@ impl Predictor {
                         .moved_between_instruments(&mut found, &mut now, stop)
                         .map(|tried| elsewhere = tried)
                         .is_none()
+                    || !stop() && fit.put_together(&mut found, &mut now)
                     || fit.steadied((&mut found, &mut now), most, stop)
                     || fit.laws_anew(&mut found, &mut now, stop) && seen.insert(now.names())
                     || fit.taken_back(&mut found, &mut now, stop)
@@ -115,13 +116,14 @@ impl Predictor {
             if found.is_empty() {
                 *first = First::of(&survey);
             }
-            // a place is chosen twice at most
+            // a place is chosen twice at most, a parameter once
             let settled = |set: &&Weighed| {
                 let at = |cause: &&Found| cause.place == set.place;
-                let is_settled = |cause: &Found| {
-                    cause.chosen_again || matches!(cause.place.0, Site::Parameter(_))
-                };
-                found.iter().find(at).is_some_and(is_settled)
+                let is_moved = |p: usize| found.iter().any(|cause| cause.moves().any(|q| q == p));
+                match set.place.0 {
+                    Site::Parameter(p) => is_moved(p),
+                    _ => found.iter().find(at).is_some_and(|cause| cause.chosen_again),
+                }
             };
             let open: Vec<Weighed> = survey.sets.iter().filter(|s| !settled(s)).cloned().collect();
             if stop() {
@@ -191,25 +193,36 @@ impl Predictor {
             (now, run) = self.evaluated(Hypothesis { noise, ..now })?;
         }
         let covariances = self.covariances(&now, &run);
+        let (covariances, doubt) = self.averaged(&found, &now, covariances);
         let pass = Pass::of(&run.path, &now.noise, true);
         let smoothed = pass.smoothed(&run.path, &now.noise);
         let nx = self.start.p0.len();
         let begun = starts(&run.path, &smoothed.mean, &Layout::of(&run.path, &now.noise));
         let mut covariances = covariances.into_iter();
-        let choice = found.iter().map(|cause| cause.choice).sum::<f64>() - self.log_prior(&now);
-        let causes = found.into_iter().map(|cause| {
-            let own = covariances.by_ref().take(cause.parts.len()).collect();
-            self.said(cause, &now.theta, own)
+        let choice = found.iter().map(|cause| cause.choice).sum::<f64>() + now.occam;
+        let choice = choice - self.log_prior(&now);
+        let mut moved = vec![];
+        let dealt_out = found.into_iter().flat_map(|cause| {
+            let own: Vec<_> = covariances.by_ref().take(cause.parts.len()).collect();
+            if !cause.is_all_parameters() {
+                return vec![(cause, own)];
+            }
+            let (causes, others) = self.dealt_out(&cause, own, &now.theta);
+            moved = others;
+            causes
         });
+        let causes = dealt_out.map(|(cause, own)| self.said(cause, &now.theta, own));
         let causes: Vec<NamedCause> = causes.collect();
         let said = |cause: Found| self.said(cause, &now.theta, vec![]);
         let suspected = if causes.is_empty() { first.sets } else { vec![] };
         Ok(Explanation {
             causes,
+            moved,
+            doubt,
             withdrawn: withdrawn.into_iter().map(said).collect(),
             nothing: first.nothing,
             suspected: suspected.into_iter().map(|set| self.fitted_laws(set)).collect(),
-            numbers: now.numbers() + now.noise.count(),
+            numbers: now.unknowns(),
             log_likelihood: now.log_likelihood,
             choice,
             samples: self.observed() as usize,

@@ -45,6 +45,10 @@ impl NamedCause {
 pub struct Explanation {
     /// Causes in order of discovery.
     pub causes: Vec<NamedCause>,
+    /// Parameters that may have moved beside those that are causes, by number, and their values.
+    pub moved: Vec<(usize, f64)>,
+    /// Probability that parameters have moved which are no causes, where errors allow for that by how probable it is.
+    pub doubt: f64,
     /// Causes that samples which were not fitted speak against.
     pub withdrawn: Vec<NamedCause>,
     /// Probability that nothing is missing.
@@ -55,9 +59,10 @@ pub struct Explanation {
     pub noise: Noise,
     /// Exact log likelihood of all innovations.
     pub log_likelihood: f64,
-    /// Numbers that were fitted: of laws, parameters and noise.
+    /// Numbers that were fitted: of laws and noise.
     pub numbers: usize,
-    /// ln of what all causes were chosen from, and of how improbable the values of parameters are beforehand.
+    /// ln of what all causes were chosen from, of how improbable the values of parameters are beforehand, and of how
+    /// much narrower the data make them.
     pub choice: f64,
     /// Measured outputs, each sample of each counted.
     pub samples: usize,

@@ -7,9 +7,9 @@ use super::predictor::Predictor;
 use super::racing::RACED;
 use super::ranked::FittedLaws;
 use super::tangent::Site;
-use super::weigh::Weighed;
+use super::weigh::{Weighed, log_choose};
 
-/// Laws of a place that may be chosen in the place of others, at most.
+/// Laws of a place that may be chosen in the place of others, at most, and beside them all that are plainer.
 const LAWS: usize = 8;
 
 /// A cause under way; its parts stand in the hypothesis in the order of causes.
@@ -18,6 +18,8 @@ pub(crate) struct Found {
     pub place: (Site, Option<usize>),
     pub parts: Vec<Part>,
     pub choice: f64,
+    /// Laws that its place may have.
+    pub among: f64,
     pub log_odds: f64,
     pub law: f64,
     pub at_place: f64,
@@ -46,6 +48,13 @@ pub(crate) fn dealt(found: &mut [Found], of: &Hypothesis) {
 }
 
 impl Found {
+    /// Takes one of its laws out; what is left was chosen among smaller sets.
+    pub(super) fn remove(&mut self, part: usize) -> Part {
+        let sets = |count: usize| log_choose(self.among, count);
+        self.choice += sets(self.parts.len() - 1) - sets(self.parts.len());
+        self.parts.remove(part)
+    }
+
     /// Takes the probability that `gain`, a logarithm of odds, leaves it against what it was weighed against alone.
     pub(super) fn weighed_against_one(&mut self, gain: f64) {
         self.law = 1.0 / (1.0 + (-gain).exp());
@@ -55,7 +64,7 @@ impl Found {
 
 /// How many causes are laws: all but parameters that have another value.
 pub(super) fn laws(found: &[Found]) -> usize {
-    found.iter().filter(|cause| !matches!(cause.place.0, Site::Parameter(_))).count()
+    found.iter().filter(|cause| cause.moves().count() == 0).count()
 }
 
 /// What is thought before anything is named.
@@ -112,6 +121,7 @@ impl Predictor {
             place: set.place,
             parts: set.hypothesis.parts.clone(),
             choice: set.choice,
+            among: set.among,
             log_odds: set.log_odds,
             law: sum(same).min(1.0),
             at_place: sum(survey.sets.iter().filter(at).collect()).min(1.0),
@@ -130,7 +140,8 @@ fn rivals(survey: &Survey, of: &Weighed) -> Vec<Weighed> {
     for set in survey.sets.iter().filter(|set| set.place == of.place) {
         let name = set.hypothesis.names();
         let is_new = !rivals.iter().any(|rival| rival.hypothesis.names() == name);
-        if is_new && name != of.hypothesis.names() && rivals.len() < LAWS {
+        let is_plainer = set.hypothesis.numbers() < of.hypothesis.numbers();
+        if is_new && name != of.hypothesis.names() && (is_plainer || rivals.len() < LAWS) {
             rivals.push(set.clone());
         }
     }

@@ -70,6 +70,7 @@ impl Predictor {
             theta,
             noise: self.white(vec![]),
             log_likelihood: f64::NEG_INFINITY,
+            occam: 0.0,
         };
         let model = self.extended(&now.parts, &now.theta)?;
         let first = match noise {
@@ -79,6 +80,7 @@ impl Predictor {
         self.settle(&first.run.path, &first.noise);
         let first = self.renewed(&model, &first.noise, 2)?;
         (now.noise, now.log_likelihood) = (first.noise, first.log_likelihood);
+        now = self.costed(now);
         let null = match found.is_empty() {
             true => now.clone(),
             false => self.without_causes(&now),
@@ -91,7 +93,8 @@ impl Predictor {
         let own = self.renewed(&self.model, &of.noise, 2);
         let (noise, log_likelihood) = own
             .map_or((of.noise.clone(), f64::NEG_INFINITY), |own| (own.noise, own.log_likelihood));
-        Hypothesis { parts: vec![], theta: self.model.theta.clone(), noise, log_likelihood }
+        let theta = self.model.theta.clone();
+        Hypothesis { parts: vec![], theta, noise, log_likelihood, occam: 0.0 }
     }
 
     /// A law of a model file as a cause; `None` where it reads or enters several places, or none of this model.
@@ -131,6 +134,7 @@ impl Predictor {
         Some(Found {
             parts,
             choice,
+            among: laws.len() as f64,
             chosen_again: false,
             given: true,
             ..self.as_cause((site, source))

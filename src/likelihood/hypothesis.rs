@@ -2,7 +2,7 @@
 //!
 //! Gauss-Newton steps (Levenberg's damping) on coefficients, shapes and parameters by the tangents of the
 //! innovations along the extended model's own path, every step judged by the exact log likelihood of
-//! the innovations; then the intensities of the noise, then again.
+//! the innovations and the prior of the parameters (`prior.rs`); then the intensities of the noise, then again.
 //! Sources: Ljung, "System Identification", 2nd ed., section 10.2; Astrom, Automatica 16, 1980.
 
 use nalgebra::{DMatrix, DVector};
@@ -42,6 +42,8 @@ pub(crate) struct Hypothesis {
     pub theta: Vec<f64>,
     pub noise: Noise,
     pub log_likelihood: f64,
+    /// What its free parameters cost (`prior.rs`).
+    pub occam: f64,
 }
 
 impl Hypothesis {
@@ -52,19 +54,28 @@ impl Hypothesis {
 
     /// Numbers that were fitted, the noise's apart.
     pub fn numbers(&self) -> usize {
-        self.parts
-            .iter()
-            .map(|part| match part {
-                Part::Law { law, .. } => law.free.len(),
-                Part::Parameter(_) => 1,
-            })
-            .sum()
+        numbers(&self.parts)
     }
 
-    /// log L - (numbers with the noise's) / 2 ln(samples).
-    pub fn criterion(&self, samples: f64) -> f64 {
-        self.log_likelihood - 0.5 * (self.numbers() + self.noise.count()) as f64 * samples.ln()
+    /// Numbers of laws and noise, of which nothing is known beforehand.
+    pub fn unknowns(&self) -> usize {
+        let parameters = self.parts.iter().filter(|part| matches!(part, Part::Parameter(_)));
+        self.numbers() + self.noise.count() - parameters.count()
     }
+
+    /// log L - (numbers of laws and noise) / 2 ln(samples), less what free parameters cost.
+    pub fn criterion(&self, samples: f64) -> f64 {
+        self.log_likelihood - 0.5 * self.unknowns() as f64 * samples.ln() - self.occam
+    }
+}
+
+/// Numbers of parts.
+pub(crate) fn numbers(parts: &[Part]) -> usize {
+    let one = |part: &Part| match part {
+        Part::Law { law, .. } => law.free.len(),
+        Part::Parameter(_) => 1,
+    };
+    parts.iter().map(one).sum()
 }
 
 /// What the parts are called, whatever their order.
@@ -100,6 +111,7 @@ impl Predictor {
             theta: theta.to_vec(),
             noise: noise.clone(),
             log_likelihood: f64::NEG_INFINITY,
+            occam: 0.0,
         };
         let (best, run) = self.evaluated(start).ok()?;
         let (best, _) = self.improved(best, run, iterations)?;
@@ -153,6 +165,7 @@ impl Predictor {
             Site::Force(c) => self.forces()[c].0.clone(),
             Site::Output(o) => signals.outputs[o].name.clone(),
             Site::Parameter(p) => signals.parameters[p].name.clone(),
+            Site::Parameters => "parameters".into(),
         }
     }
 
@@ -166,6 +179,17 @@ impl Predictor {
         let wanted = Wanted { theta, seen: true, gate: Some(self.gate()) };
         let run = self.run(&model, &of.noise, wanted)?;
         Ok((Hypothesis { log_likelihood: run.log_likelihood, ..of }, run))
+    }
+
+    /// A hypothesis with what its parameters cost, where it was not fitted.
+    pub(super) fn costed(&self, of: Hypothesis) -> Hypothesis {
+        if !of.parts.iter().any(|part| matches!(part, Part::Parameter(_))) {
+            return of;
+        }
+        let Ok((_, run)) = self.evaluated(of.clone()) else { return of };
+        let pass = Pass::of(&run.path, &of.noise, false);
+        let sums = gram(&run.path, &pass, &of.noise, &self.slopes(&of, &run));
+        Hypothesis { occam: self.occam(&of, &sums.square), ..of }
     }
 
     /// Damped Gauss-Newton steps at a fixed noise.
@@ -182,11 +206,16 @@ impl Predictor {
             }
             let columns = self.slopes(&best, &run);
             let pass = Pass::of(&run.path, &best.noise, false);
-            let sums = gram(&run.path, &pass, &best.noise, &columns);
+            let mut sums = gram(&run.path, &pass, &best.noise, &columns);
+            best.occam = self.occam(&best, &sums.square);
+            let (pull, known) = self.pull(&best);
+            sums.slope -= pull;
+            sums.square.set_diagonal(&(sums.square.diagonal() + known));
             let m = columns.len();
             let size = DVector::from_fn(m, |i, _| sums.square[(i, i)].max(1e-300).sqrt());
             let scaled = DMatrix::from_fn(m, m, |i, j| sums.square[(i, j)] / size[i] / size[j]);
-            let before = best.log_likelihood;
+            let posterior = |of: &Hypothesis| of.log_likelihood + self.log_prior(of);
+            let before = posterior(&best);
             let mut moved = false;
             for _ in 0..DAMPINGS {
                 let damped = &scaled + DMatrix::identity(m, m) * damping;
@@ -201,7 +230,7 @@ impl Predictor {
                 let next = step.map(|step| self.stepped(&best, step.as_slice()));
                 let tried = next.and_then(|next| self.evaluated(next).ok());
                 if let Some((next, path)) = tried
-                    && next.log_likelihood > best.log_likelihood
+                    && posterior(&next) > before
                 {
                     (best, run, moved) = (next, path, true);
                     damping = (damping / 10.0_f64).max(1e-9);
@@ -209,7 +238,7 @@ impl Predictor {
                 }
                 damping = (damping * 10.0).max(1e-5);
             }
-            if !moved || best.log_likelihood - before < SETTLED {
+            if !moved || posterior(&best) - before < SETTLED {
                 break;
             }
         }

@@ -53,9 +53,9 @@ impl Predictor {
             let others = own().filter_map(|t| {
                 let other = t.causes.get(i)?;
                 let hypothesis = Hypothesis { parts: other.parts.clone(), ..t.fitted.clone() };
-                let (place, choice) = (other.place, other.choice);
+                let (place, choice, among) = (other.place, other.choice, other.among);
                 let (log_odds, probability) = (t.gain, cause.law * t.gain.exp() / all);
-                let set = Weighed { hypothesis, place, choice, log_odds, probability };
+                let set = Weighed { hypothesis, place, choice, among, log_odds, probability };
                 Some(self.fitted_laws(set))
             });
             cause.others.extend(others.collect::<Vec<_>>());
@@ -113,8 +113,8 @@ impl Predictor {
             }
             let has_same_number = matches!(&part, Part::Law { law, .. } if has_same_number(law));
             let mut causes = found.to_vec();
-            let choice = causes[cause].choice;
-            causes[cause] = Found { parts: vec![part], choice, ..self.as_cause(place) };
+            let Found { choice, among, .. } = causes[cause];
+            causes[cause] = Found { parts: vec![part], choice, among, ..self.as_cause(place) };
             let mut moved = Hypothesis { parts: joined(&causes), ..now.clone() };
             if !has_same_number {
                 moved = self.raced(moved.parts, &now.theta, &now.noise)?;

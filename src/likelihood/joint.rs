@@ -6,17 +6,20 @@
 //!
 //! 1. where no further cause is probable as the others stand, the best of each place are fitted together with
 //!    them;
-//! 2. beside the other causes the law of a place is chosen anew among all that were fitted there.
+//! 2. beside the other causes the law of a place is chosen anew among all that were fitted there, a plainer one beside
+//!    all free parameters, too (`together.rs`).
 //!
 //! Both compare log L - (numbers) / 2 ln(samples) - ln(choices). Sources: Miller, "Subset Selection in
 //! Regression", 2nd ed., 2002, sections 3.4 and 3.5 (sequential replacement); Buja, Hastie and Tibshirani, Annals
 //! of Statistics 17, 1989 (backfitting against a joint fit).
 
+use std::collections::BTreeSet;
+
 use rayon::prelude::*;
 
 use super::evidence::log_sum;
 use super::found::Found;
-use super::hypothesis::{Hypothesis, names};
+use super::hypothesis::{Hypothesis, names, numbers};
 use super::places::Survey;
 use super::predictor::Predictor;
 use super::ranked::MISSING;
@@ -82,20 +85,32 @@ impl Predictor {
     fn law_anew(&self, found: &mut Vec<Found>, now: &mut Hypothesis, at: usize) -> bool {
         let own = found[at].clone();
         let present = self.merit(now, found);
-        let replaced = |set: &Weighed| {
+        let replaced = |(set, among_parameters): (&Weighed, bool)| {
             let mut all = found.clone();
             let parts = set.hypothesis.parts.clone();
             all[at] = Found { parts, choice: set.choice, ..own.clone() };
-            let fitted = self.fit_all_raced(&mut all, now, present)?;
+            let mut from = now.clone();
+            if among_parameters {
+                (all, from) = self.beside_all_parameters(&all, now)?;
+            }
+            let fitted = self.fit_all_raced(&mut all, &from, present)?;
             let gain = self.merit(&fitted, &all) - present;
-            Some((own.as_set(&all[at], &fitted, gain), all, fitted))
+            let cause = all.iter().find(|cause| cause.place == own.place)?;
+            Some((own.as_set(cause, &fitted, gain), all, fitted))
         };
-        let mut all: Vec<_> = own.rivals.par_iter().filter_map(replaced).collect();
+        // what a law has beside a plainer one may be what parameters do
+        let is_plainer = |set: &&Weighed| set.hypothesis.numbers() < numbers(&own.parts);
+        let plainer = own.rivals.iter().filter(is_plainer).map(|set| (set, true));
+        let tried: Vec<_> = own.rivals.iter().map(|set| (set, false)).chain(plainer).collect();
+        let mut all: Vec<_> = tried.into_par_iter().filter_map(replaced).collect();
         if all.is_empty() {
             return false;
         }
         all.push((own.as_set(&own, now, 0.0), found.clone(), now.clone()));
         all.sort_by(|a, b| b.0.log_odds.total_cmp(&a.0.log_odds));
+        // each law beside the parameters that it is likelier with
+        let mut known = BTreeSet::new();
+        all.retain(|(set, ..)| known.insert(set.hypothesis.names()));
         let odds: Vec<f64> = all.iter().map(|(set, ..)| set.log_odds).collect();
         let sum = log_sum(&odds);
         all.iter_mut().for_each(|(set, ..)| {
@@ -108,7 +123,9 @@ impl Predictor {
             return false;
         };
         (*found, *now) = (causes, fitted);
-        let cause = &mut found[at];
+        let Some(cause) = found.iter_mut().find(|cause| cause.place == own.place) else {
+            return false;
+        };
         (cause.law, cause.log_odds) = (best.probability, best.log_odds);
         cause.rivals = sets.iter().filter(|set| !is_best(set)).cloned().collect();
         let (into, sources) = (self.name(own.place.0), &self.model.plan.sources.entries);
@@ -126,6 +143,7 @@ impl Found {
             hypothesis: Hypothesis { parts: cause.parts.clone(), ..fitted.clone() },
             place: self.place,
             choice: cause.choice,
+            among: cause.among,
             log_odds: self.log_odds + gain,
             probability: 0.0,
         }

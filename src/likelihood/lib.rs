@@ -19,6 +19,7 @@ use lacuna_core::{data, effect, evaluate, fault, optimise, real, register, stati
 
 mod ahead;
 mod autoregressive;
+mod averaged;
 mod backward;
 mod elimination;
 mod error;
@@ -69,6 +70,7 @@ mod std_error;
 mod steady;
 mod taken_back;
 mod tangent;
+mod together;
 mod transition;
 mod weigh;
 

@@ -116,6 +116,7 @@ impl Predictor {
             theta: self.model.theta.clone(),
             noise: null.noise.clone(),
             log_likelihood: null.log_likelihood,
+            occam: 0.0,
         };
         let mut fitted: Vec<(Hypothesis, usize)> = vec![];
         let (mut done, mut quick): (Vec<usize>, Option<Self>) = (vec![], None);

@@ -162,7 +162,7 @@ impl Predictor {
         let unit = match site {
             Site::Force(c) => self.forces().swap_remove(c).1,
             Site::Output(o) => self.outputs().swap_remove(o).1,
-            Site::Parameter(_) => return vec![],
+            Site::Parameter(_) | Site::Parameters => return vec![],
         };
         let into_output = matches!(site, Site::Output(_));
         let sees = |e: usize| !(into_output && plan.sources.is_output(e));

@@ -1,7 +1,8 @@
 //! Covariance of what a hypothesis has fitted: the inverse of the information.
 //!
 //! I = sum of T' T, T being the tangents of the standardised innovations along all free numbers, at the
-//! noise that was fitted. Source: Ljung, "System Identification", 2nd ed., section 9.4.
+//! noise that was fitted, and what the prior of the parameters adds (`prior.rs`). Source: Ljung, "System
+//! Identification", 2nd ed., sections 7.4 and 9.4.
 
 use nalgebra::DMatrix;
 
@@ -16,7 +17,8 @@ impl Predictor {
     pub(crate) fn covariances(&self, of: &Hypothesis, run: &Followed) -> Vec<DMatrix<f64>> {
         let columns = self.slopes(of, run);
         let pass = Pass::of(&run.path, &of.noise, false);
-        let square = gram(&run.path, &pass, &of.noise, &columns).square;
+        let mut square = gram(&run.path, &pass, &of.noise, &columns).square;
+        square.set_diagonal(&(square.diagonal() + self.pull(of).1));
         let m = columns.len();
         let size: Vec<f64> = (0..m).map(|i| square[(i, i)].max(1e-300).sqrt()).collect();
         let scaled = DMatrix::from_fn(m, m, |i, j| square[(i, j)] / size[i] / size[j]);

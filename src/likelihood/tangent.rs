@@ -27,6 +27,8 @@ pub(crate) enum Site {
     Output(usize),
     /// A parameter.
     Parameter(usize),
+    /// All free parameters together.
+    Parameters,
 }
 
 /// What one number changes, sample by sample.
@@ -135,6 +137,8 @@ pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[Column]) 
                         Site::Force(c) => *to += g[i * nf + c] * phi[k],
                         Site::Parameter(p) => *to += path.theta[(k * n + i) * nt + p] * phi[k],
                         Site::Output(o) => *to += path.read(k, i, o) * phi[k],
+                        // each of them has a column of its own
+                        Site::Parameters => {}
                     }
                 }
             }

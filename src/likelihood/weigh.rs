@@ -14,7 +14,7 @@ use super::tangent::Site;
 
 /// How much less probable than the best a plainer set may be and still be the one that is named, as a
 /// natural logarithm of odds: hardly worth mentioning (Kass and Raftery, JASA 90, 1995).
-const AS_GOOD: f64 = 1.5;
+pub(super) const AS_GOOD: f64 = 1.5;
 
 /// The plainest of the sets that are as probable as the first: fewest numbers, then plainest laws.
 pub(crate) fn plainest(sets: &[Weighed]) -> Option<&Weighed> {
@@ -38,6 +38,8 @@ pub(crate) struct Weighed {
     pub place: (Site, Option<usize>),
     /// ln of the places and sets that it was chosen from.
     pub choice: f64,
+    /// Laws that its place may have.
+    pub among: f64,
     pub log_odds: f64,
     pub probability: f64,
 }
@@ -63,11 +65,12 @@ impl Predictor {
             .into_iter()
             .map(|(hypothesis, spot)| {
                 let spot = &spots[spot];
-                let sets = log_choose(count(spot).max(1.0), hypothesis.parts.len() as f64);
-                let choice = (spots.len() as f64).ln() + sets;
+                let among = count(spot).max(1.0);
+                let choice = (spots.len() as f64).ln() + log_choose(among, hypothesis.parts.len());
                 let prior = self.log_prior(&hypothesis);
                 let log_odds = hypothesis.criterion(samples) + prior - base - choice;
-                Weighed { hypothesis, place: spot.place(), choice, log_odds, probability: 0.0 }
+                let place = spot.place();
+                Weighed { hypothesis, place, choice, among, log_odds, probability: 0.0 }
             })
             .collect();
         found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
@@ -98,7 +101,7 @@ impl Predictor {
 }
 
 /// ln of the number of sets of `k` out of `n`.
-fn log_choose(n: f64, k: f64) -> f64 {
-    let k = k.min(n);
-    (0..k as usize).map(|i| ((n - i as f64) / (i as f64 + 1.0)).ln()).sum()
+pub(super) fn log_choose(n: f64, k: usize) -> f64 {
+    let k = k.min(n as usize);
+    (0..k).map(|i| ((n - i as f64) / (i as f64 + 1.0)).ln()).sum()
 }

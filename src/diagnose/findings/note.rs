@@ -113,6 +113,13 @@ pub enum Note {
         /// Standard deviation of a parameter that may be wrong, as a share of its value.
         prior: f64,
     },
+    /// Standard errors allow for parameters that no cause names to be wrong, by how probable it is.
+    ParametersDoubted {
+        /// Probability that they are.
+        doubt: f64,
+        /// Standard deviation of a parameter that may be wrong, as a share of its value.
+        prior: f64,
+    },
     /// The width of friction at rest is not resolved.
     WidthUnresolved {
         /// Its channel.

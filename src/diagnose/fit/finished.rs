@@ -38,6 +38,8 @@ pub(crate) struct Finished {
     pub undetermined: Vec<Combination>,
     /// Noise inside the plant, where causes were found beside it, by innovations.
     pub inside: Option<Vec<Disturbance>>,
+    /// Probability that parameters are off which no cause names, where errors allow for that by how probable it is.
+    pub doubt: f64,
 }
 
 /// Whether the free parameters, all together, are further from where they began than their

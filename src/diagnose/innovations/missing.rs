@@ -8,10 +8,13 @@ use crate::findings::hand_over::Searched;
 use crate::findings::note::Note;
 use crate::fit::affordable::affordable_forces;
 use crate::fit::finished::Finished;
+use crate::fit::nuisance::PRIOR;
 use crate::fit::problem::Grain;
 use crate::prepare::prepared::Prepared;
 use crate::watch::Watch;
 
+/// Probability that parameters are off from which on it is said: what a 95 % interval leaves out.
+const DOUBTED: f64 = 0.05;
 /// Coordinates that are told of each channel.
 const REPORTED: usize = 4;
 
@@ -38,6 +41,9 @@ pub(crate) fn completed(
     }
     if let Some(disturbances) = chosen.inside.clone().filter(|all| !all.is_empty()) {
         of.notes.push(Note::Inside { disturbances });
+    }
+    if chosen.causes() > 0 && chosen.doubt > DOUBTED {
+        of.notes.push(Note::ParametersDoubted { doubt: chosen.doubt, prior: PRIOR });
     }
     of
 }

@@ -24,6 +24,7 @@ fn the_noise_of_held_samples_is_that_of_these_samples() {
             theta: predictor.model.theta.clone(),
             noise: predictor.white(vec![variance]),
             log_likelihood: 0.0,
+            occam: 0.0,
         };
         predictor.density(&of, std::slice::from_ref(&held)).unwrap()
     };

@@ -18,3 +18,4 @@ mod stationary;
 mod steady;
 mod suspected;
 mod tangent;
+mod together;

@@ -1,7 +1,7 @@
 //! Noise inside the plant in words.
 
 use crate::diagnose::{Disturbance, Disturbs};
-use crate::digits::with_unit;
+use crate::digits::{percent, with_unit};
 
 /// What disturbs the plant beside its causes, and what that means for simulations.
 pub(super) fn inside(all: &[Disturbance]) -> String {
@@ -10,6 +10,16 @@ pub(super) fn inside(all: &[Disturbance]) -> String {
         "The plant itself is disturbed: {}. Causes were judged by what a predictor does not foresee, \
          which such noise leaves white; a simulation drifts by it, whatever it is extended by.",
         said.join("; ")
+    )
+}
+
+/// How probable it is that parameters are off which no cause names, and what that does to standard errors.
+pub(super) fn doubted(doubt: f64, prior: f64) -> String {
+    let probable = if doubt > 0.995 { "> 99 %".into() } else { percent(doubt) };
+    format!(
+        "Parameters that are not named may be wrong, too ({probable} probable), though none of them alone is sure: the \
+         standard errors allow for it (prior: {}). Estimate them before, or hold with --fix those that you are sure of.",
+        percent(prior)
     )
 }
 
@@ -42,5 +52,11 @@ mod tests {
         let said = inside(&[of(Disturbs::White, "carriage"), of(Disturbs::Wander, "encoder")]);
         assert!(said.contains(&format!("force of {} on carriage", with_unit(2.7, "N"))), "{said}");
         assert!(said.contains("reading of encoder wanders by"), "{said}");
+    }
+
+    #[test]
+    fn doubt_says_how_large_it_is() {
+        assert!(doubted(0.42, 0.15).contains("(42 % probable)"));
+        assert!(doubted(0.9999, 0.15).contains("(> 99 % probable)"));
     }
 }

@@ -1,6 +1,6 @@
 //! What is worth knowing beside the causes, one paragraph each.
 
-use super::inside::inside;
+use super::inside::{doubted, inside};
 use crate::diagnose::{AtLines, ClosedLoop, Distortion, Finding, Follows, Note, Regime, Released};
 use crate::digits::{interval, number, percent, rough, spaced, with_unit};
 
@@ -111,6 +111,7 @@ pub fn note(note: &Note) -> String {
                 .into()
         }
         Note::Inside { disturbances } => inside(disturbances),
+        Note::ParametersDoubted { doubt, prior } => doubted(*doubt, *prior),
         Note::MostCauses => "The search stopped at the largest number of causes allowed.".into(),
         Note::AllParametersDoubted { prior } => format!(
             "A parameter is named as wrong, so the standard errors allow for the others to be wrong too \

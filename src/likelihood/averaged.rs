@@ -1,0 +1,67 @@
+//! Errors that allow for parameters which a hypothesis leaves at their values: an average over hypotheses.
+//!
+//! Beside the hypothesis as it is named stands the one of the same laws in which all free parameters have moved
+//! (`together.rs`), fitted as well. Of its numbers a, with covariance C, it is less probable than the one named, or
+//! hardly more; w is its probability of the two, and about the numbers that are told
+//!
+//! ```text
+//! covariance = (1 - w) C_named + w (C_other + (a_other - a_named)(a_other - a_named)')
+//! ```
+//!
+//! Source: Hoeting, Madigan, Raftery and Volinsky, "Bayesian model averaging", Statistical Science 14, 1999.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::found::Found;
+use super::hypothesis::{Hypothesis, Part};
+use super::predictor::Predictor;
+
+/// Less than this probability changes no error.
+const NONE: f64 = 1e-3;
+
+impl Predictor {
+    /// The covariances of the parts of a hypothesis, and the probability that parameters have moved which it leaves.
+    pub(super) fn averaged(
+        &self,
+        found: &[Found],
+        now: &Hypothesis,
+        named: Vec<DMatrix<f64>>,
+    ) -> (Vec<DMatrix<f64>>, f64) {
+        if let Some(all) = found.iter().find(|cause| cause.is_all_parameters()) {
+            return (named, all.law);
+        }
+        let other = (!found.is_empty()).then(|| self.fitted_together(found, now)).flatten();
+        let Some((other, gain)) = other else { return (named, 0.0) };
+        let chance = 1.0 / (1.0 + (-gain).exp());
+        let run = self.evaluated(other.clone()).ok().filter(|_| chance > NONE);
+        let Some((_, run)) = run else { return (named, 0.0) };
+        let others = self.covariances(&other, &run);
+        let is_law = |part: &&Part| matches!(part, Part::Law { .. });
+        let mut laws = other.parts.iter().zip(&others).filter(|(part, _)| is_law(part));
+        let mut all = vec![];
+        for (part, own) in now.parts.iter().zip(named) {
+            let beside = match part {
+                Part::Law { .. } => laws.next(),
+                Part::Parameter(p) => {
+                    let is_own = |part: &Part| matches!(part, Part::Parameter(q) if p == q);
+                    other.parts.iter().zip(&others).find(|(part, _)| is_own(part))
+                }
+            };
+            let Some((part_beside, covariance)) = beside else {
+                all.push(own);
+                continue;
+            };
+            let off = values(part_beside, &other) - values(part, now);
+            all.push(own * (1.0 - chance) + (covariance + &off * off.transpose()) * chance);
+        }
+        (all, chance)
+    }
+}
+
+/// The numbers of a part.
+fn values(part: &Part, of: &Hypothesis) -> DVector<f64> {
+    match part {
+        Part::Parameter(p) => DVector::from_element(1, of.theta[*p]),
+        Part::Law { law, .. } => DVector::from_column_slice(&law.values),
+    }
+}

@@ -1,0 +1,172 @@
+//! Exchanges: all free parameters of the model together, in the place of those that moved one by one.
+//!
+//! Parameters that are all a little wrong are one hypothesis, each with its prior (`prior.rs`). One by one none of them
+//! explains enough, and laws that do what some of them do together come first. Tried with all other causes there:
+//!
+//! ```text
+//! every free parameter                                  in the place of those that are causes of their own
+//! those of them that moved, p(moved) > p(stayed)        in the place of all
+//! ```
+//!
+//! Sources: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.4 (sequential replacement); Dickey,
+//! Annals of Mathematical Statistics 42, 1971 (whether one of them moved).
+
+use nalgebra::DMatrix;
+
+use super::found::{Found, joined};
+use super::hypothesis::{Hypothesis, Part};
+use super::predictor::Predictor;
+use super::prior::has_moved;
+use super::tangent::Site;
+
+impl Found {
+    /// Whether it is all free parameters together.
+    pub(super) fn is_all_parameters(&self) -> bool {
+        self.place.0 == Site::Parameters
+    }
+
+    /// The parameters that it moves.
+    pub(super) fn moves(&self) -> impl Iterator<Item = usize> + '_ {
+        self.parts.iter().filter_map(|part| match part {
+            Part::Parameter(p) => Some(*p),
+            Part::Law { .. } => None,
+        })
+    }
+}
+
+impl Predictor {
+    /// Numbers of the parameters that may be wrong.
+    pub(super) fn free_parameters(&self) -> Vec<usize> {
+        let signals = &self.model.plan.signals.parameters;
+        let is_free = |&p: &usize| !signals[p].fixed && self.scope.parameter(&signals[p].name);
+        (0..signals.len()).filter(is_free).collect()
+    }
+
+    /// The causes after the exchange of single parameters for all of them, or of all for those that moved; whether
+    /// that is more probable.
+    pub(super) fn put_together(&self, found: &mut Vec<Found>, now: &mut Hypothesis) -> bool {
+        let before = self.merit(now, found);
+        let others = self.other_hypothesis(found, now);
+        let Some((mut causes, from)) = others.filter(|(causes, _)| !causes.is_empty()) else {
+            return false;
+        };
+        let Some(fitted) = self.fit_all_raced(&mut causes, &from, before) else { return false };
+        let gain = self.merit(&fitted, &causes) - before;
+        if !(gain > 0.0) {
+            return false;
+        }
+        causes.iter_mut().filter(|cause| cause.moves().count() > 0).for_each(|cause| {
+            cause.weighed_against_one(gain);
+            cause.log_odds = gain;
+        });
+        (*found, *now) = (causes, fitted);
+        true
+    }
+
+    /// The hypothesis of the same laws with all free parameters moved, fitted, and how much more probable it is, as a
+    /// logarithm of odds.
+    pub(super) fn fitted_together(
+        &self,
+        found: &[Found],
+        now: &Hypothesis,
+    ) -> Option<(Hypothesis, f64)> {
+        let before = self.merit(now, found);
+        let (mut causes, from) = self.other_hypothesis(found, now)?;
+        let fitted = self.fit_all_raced(&mut causes, &from, before)?;
+        let gain = self.merit(&fitted, &causes) - before;
+        Some((fitted, gain))
+    }
+
+    /// The other of the two hypotheses, and where its fit begins; `None` where there is none.
+    fn other_hypothesis(
+        &self,
+        found: &[Found],
+        now: &Hypothesis,
+    ) -> Option<(Vec<Found>, Hypothesis)> {
+        let Some(all) = found.iter().find(|cause| cause.is_all_parameters()) else {
+            return self.beside_all_parameters(found, now);
+        };
+        let mut causes = laws_alone(found);
+        let mut theta = now.theta.clone();
+        for (p, chance) in all.moves().zip(self.chances_moved(found, now)?) {
+            if chance > 0.5 {
+                let place = (Site::Parameter(p), None);
+                causes.push(Found { parts: vec![Part::Parameter(p)], ..self.as_cause(place) });
+            } else {
+                theta[p] = self.model.theta[p];
+            }
+        }
+        let parts = joined(&causes);
+        Some((causes, Hypothesis { parts, theta, ..now.clone() }))
+    }
+
+    /// The laws of some causes beside all free parameters, and where their fit begins; `None` where there is but one
+    /// parameter, or all of them are causes already.
+    pub(super) fn beside_all_parameters(
+        &self,
+        found: &[Found],
+        now: &Hypothesis,
+    ) -> Option<(Vec<Found>, Hypothesis)> {
+        let free = self.free_parameters();
+        let moved: usize = found.iter().map(|cause| cause.moves().count()).sum();
+        if free.len() < 2 || moved >= free.len() {
+            return None;
+        }
+        let mut causes = laws_alone(found);
+        let parts = free.into_iter().map(Part::Parameter).collect();
+        causes.push(Found { parts, ..self.as_cause((Site::Parameters, None)) });
+        let parts = joined(&causes);
+        Some((causes, Hypothesis { parts, ..now.clone() }))
+    }
+
+    /// All free parameters as causes of their own, those that moved, and the values of the others. Where none of them
+    /// alone has to have moved (along a ridge each makes up for another), it is the one that has to the most.
+    pub(super) fn dealt_out(
+        &self,
+        all: &Found,
+        covariances: Vec<DMatrix<f64>>,
+        theta: &[f64],
+    ) -> (Vec<(Found, Vec<DMatrix<f64>>)>, Vec<(usize, f64)>) {
+        let chance = |(p, covariance): (usize, DMatrix<f64>)| {
+            let chance = has_moved(theta[p], self.model.theta[p], covariance[(0, 0)].sqrt());
+            (p, chance, covariance)
+        };
+        let mut own: Vec<_> = all.moves().zip(covariances).map(chance).collect();
+        own.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let moved = own.iter().take_while(|(_, chance, _)| *chance > 0.5).count().max(1);
+        let others = own.split_off(moved.min(own.len()));
+        let single = |(p, chance, covariance): (usize, f64, DMatrix<f64>)| {
+            let cause = Found {
+                parts: vec![Part::Parameter(p)],
+                place: (Site::Parameter(p), None),
+                law: all.law * chance,
+                at_place: all.law * chance,
+                ..all.clone()
+            };
+            (cause, vec![covariance])
+        };
+        let values = others.into_iter().map(|(p, ..)| (p, theta[p])).collect();
+        (own.into_iter().map(single).collect(), values)
+    }
+
+    /// Probability that each of all free parameters moved, where those are a cause.
+    fn chances_moved(&self, found: &[Found], now: &Hypothesis) -> Option<Vec<f64>> {
+        let (_, run) = self.evaluated(now.clone()).ok()?;
+        let mut covariances = self.covariances(now, &run).into_iter();
+        let mut own: Vec<(&Found, Vec<DMatrix<f64>>)> = found
+            .iter()
+            .map(|cause| (cause, covariances.by_ref().take(cause.parts.len()).collect()))
+            .collect();
+        let (all, errors) =
+            own.swap_remove(own.iter().position(|(cause, _)| cause.is_all_parameters())?);
+        let chance = |(p, covariance): (usize, DMatrix<f64>)| {
+            has_moved(now.theta[p], self.model.theta[p], covariance[(0, 0)].sqrt())
+        };
+        Some(all.moves().zip(errors).map(chance).collect())
+    }
+}
+
+/// Causes that move no parameter.
+fn laws_alone(found: &[Found]) -> Vec<Found> {
+    found.iter().filter(|cause| cause.moves().count() == 0).cloned().collect()
+}
