@@ -202,12 +202,14 @@ impl Predictor {
         let choice = found.iter().map(|cause| cause.choice).sum::<f64>() + now.occam;
         let choice = choice - self.log_prior(&now);
         let mut moved = vec![];
+        // what is found is told
+        let least = usize::from(found.len() == 1);
         let dealt_out = found.into_iter().flat_map(|cause| {
             let own: Vec<_> = covariances.by_ref().take(cause.parts.len()).collect();
             if !cause.is_all_parameters() {
                 return vec![(cause, own)];
             }
-            let (causes, others) = self.dealt_out(&cause, own, &now.theta);
+            let (causes, others) = self.dealt_out((&cause, least), own, &now.theta);
             moved = others;
             causes
         });

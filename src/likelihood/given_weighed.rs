@@ -6,11 +6,11 @@
 //! Source: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.4 (sequential replacement).
 
 use super::found::{Found, joined};
-use super::hypothesis::{Hypothesis, names};
+use super::hypothesis::{Hypothesis, names, numbers};
 use super::places::Survey;
 use super::predictor::Predictor;
 use super::ranked::MISSING;
-use super::weigh::{Weighed, plainest};
+use super::weigh::{AS_GOOD, Weighed, plainest};
 
 impl Predictor {
     /// Weighs the given causes that were not weighed yet; whether another stands in the place of one.
@@ -56,6 +56,10 @@ impl Predictor {
     ) -> bool {
         let (own, place) = (names(&found[at].parts), found[at].place);
         let is_own = |set: &&Weighed| set.place == place && names(&set.hypothesis.parts) == own;
+        if let Some(set) = survey.sets.iter().find(is_own) {
+            // chosen from what the survey chose from
+            (found[at].choice, found[at].among) = (set.choice, set.among);
+        }
         let is_taken = |set: &Weighed| {
             set.place != place && found.iter().any(|other| other.place == set.place)
         };
@@ -69,7 +73,11 @@ impl Predictor {
             Some((self.merit(&fitted, &all) - value, all, fitted))
         });
         let gain = fitted.as_ref().map_or(f64::NEG_INFINITY, |(gain, ..)| *gain);
-        if let Some((_, all, other)) = fitted.filter(|_| gain > 0.0) {
+        // what has more numbers has to be more than as good
+        let is_better = |all: &Vec<Found>| {
+            gain > if numbers(&all[at].parts) > numbers(&found[at].parts) { AS_GOOD } else { 0.0 }
+        };
+        if let Some((_, all, other)) = fitted.filter(|(_, all, _)| is_better(all)) {
             (*found, *now) = (all, other);
             return true;
         }

@@ -16,6 +16,7 @@
 //! occam = 1/2 ln det( I + D (S_pp - S_pl S_ll^-1 S_lp) D )
 //! ```
 //!
+//! and along no direction more than a law's number, 1/2 ln(samples): the same number as a law is no other hypothesis.
 //! Sources: O'Hagan, "On outlier rejection phenomena in Bayes inference", JRSS B 41, 1979; MacKay, Neural Computation
 //! 4, 1992; Lange, Little and Taylor, JASA 84, 1989 (steps of a fit under Student's distribution, by weights).
 
@@ -95,7 +96,8 @@ impl Predictor {
         // of what size nothing is known costs what a law's number does
         let is_parameter = |part: &&Part| matches!(part, Part::Parameter(_));
         let others = of.parts.iter().filter(is_parameter).count() - p.len();
-        let unknown = 0.5 * others as f64 * self.observed().ln();
+        let most = 0.5 * self.observed().ln();
+        let unknown = others as f64 * most;
         if p.is_empty() {
             return unknown;
         }
@@ -115,7 +117,7 @@ impl Predictor {
             f64::from(u8::from(i == j)) + width(i) * own[(i, j)] * width(j)
         });
         let values = narrower.symmetric_eigenvalues();
-        unknown + values.iter().map(|v| 0.5 * v.max(1.0).ln()).sum::<f64>()
+        unknown + values.iter().map(|v| (0.5 * v.max(1.0).ln()).min(most)).sum::<f64>()
     }
 
     /// Of every free number of a hypothesis what [`usual`] says; `None` of a law's.

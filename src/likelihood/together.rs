@@ -119,11 +119,11 @@ impl Predictor {
         Some((causes, Hypothesis { parts, ..now.clone() }))
     }
 
-    /// All free parameters as causes of their own, those that moved, and the values of the others. Where none of them
-    /// alone has to have moved (along a ridge each makes up for another), it is the one that has to the most.
+    /// All free parameters as causes of their own, those that moved, at least so many, and the values of the others:
+    /// along a ridge, where each makes up for another, none of them alone has to have moved.
     pub(super) fn dealt_out(
         &self,
-        all: &Found,
+        (all, least): (&Found, usize),
         covariances: Vec<DMatrix<f64>>,
         theta: &[f64],
     ) -> (Vec<(Found, Vec<DMatrix<f64>>)>, Vec<(usize, f64)>) {
@@ -133,7 +133,7 @@ impl Predictor {
         };
         let mut own: Vec<_> = all.moves().zip(covariances).map(chance).collect();
         own.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let moved = own.iter().take_while(|(_, chance, _)| *chance > 0.5).count().max(1);
+        let moved = own.iter().take_while(|(_, chance, _)| *chance > 0.5).count().max(least);
         let others = own.split_off(moved.min(own.len()));
         let single = |(p, chance, covariance): (usize, f64, DMatrix<f64>)| {
             let cause = Found {
