@@ -1,7 +1,7 @@
 //! Errors that allow for parameters which a hypothesis leaves at their values: an average over hypotheses.
 //!
 //! Beside the hypothesis as it is named stands the one of the same laws in which all free parameters have moved
-//! (`together.rs`), fitted as well. Of its numbers a, with covariance C, it is less probable than the one named, or
+//! (`all_parameters.rs`), fitted as well. Of its numbers a, with covariance C, it is less probable than the one named, or
 //! hardly more; w is its probability of the two, and about the numbers that are told
 //!
 //! ```text
@@ -30,7 +30,8 @@ impl Predictor {
         if let Some(all) = found.iter().find(|cause| cause.is_all_parameters()) {
             return (named, all.law);
         }
-        let other = (!found.is_empty()).then(|| self.fitted_together(found, now)).flatten();
+        let other =
+            (!found.is_empty()).then(|| self.fitted_with_all_parameters(found, now)).flatten();
         let Some((other, gain)) = other else { return (named, 0.0) };
         let chance = 1.0 / (1.0 + (-gain).exp());
         let run = self.evaluated(other.clone()).ok().filter(|_| chance > NONE);
@@ -40,18 +41,18 @@ impl Predictor {
         let mut laws = other.parts.iter().zip(&others).filter(|(part, _)| is_law(part));
         let mut all = vec![];
         for (part, own) in now.parts.iter().zip(named) {
-            let beside = match part {
+            let matching = match part {
                 Part::Law { .. } => laws.next(),
                 Part::Parameter(p) => {
                     let is_own = |part: &Part| matches!(part, Part::Parameter(q) if p == q);
                     other.parts.iter().zip(&others).find(|(part, _)| is_own(part))
                 }
             };
-            let Some((part_beside, covariance)) = beside else {
+            let Some((other_part, covariance)) = matching else {
                 all.push(own);
                 continue;
             };
-            let off = values(part_beside, &other) - values(part, now);
+            let off = values(other_part, &other) - values(part, now);
             all.push(own * (1.0 - chance) + (covariance + &off * off.transpose()) * chance);
         }
         (all, chance)

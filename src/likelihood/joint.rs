@@ -7,7 +7,7 @@
 //! 1. where no further cause is probable as the others stand, the best of each place are fitted together with
 //!    them;
 //! 2. beside the other causes the law of a place is chosen anew among all that were fitted there, a plainer one beside
-//!    all free parameters, too (`together.rs`).
+//!    all free parameters, too (`all_parameters.rs`).
 //!
 //! Both compare log L - (numbers) / 2 ln(samples) - ln(choices). Sources: Miller, "Subset Selection in
 //! Regression", 2nd ed., 2002, sections 3.4 and 3.5 (sequential replacement); Buja, Hastie and Tibshirani, Annals
@@ -91,7 +91,7 @@ impl Predictor {
             all[at] = Found { parts, choice: set.choice, ..own.clone() };
             let mut from = now.clone();
             if among_parameters {
-                (all, from) = self.beside_all_parameters(&all, now)?;
+                (all, from) = self.with_all_parameters(&all, now)?;
             }
             let fitted = self.fit_all_raced(&mut all, &from, present)?;
             let gain = self.merit(&fitted, &all) - present;

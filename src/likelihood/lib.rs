@@ -18,6 +18,7 @@ extern crate self as lacuna;
 use lacuna_core::{data, effect, evaluate, fault, optimise, real, register, statistics, system};
 
 mod ahead;
+mod all_parameters;
 mod autoregressive;
 mod averaged;
 mod backward;
@@ -70,7 +71,6 @@ mod std_error;
 mod steady;
 mod taken_back;
 mod tangent;
-mod together;
 mod transition;
 mod weigh;
 

@@ -59,9 +59,9 @@ pub(super) fn finished(
     let covariance = DMatrix::from_fn(at.len(), at.len(), |i, j| between(at[i], at[j]));
     let precision = Precision::of(keys.clone(), covariance);
     let added: Vec<Added> = laws.into_iter().map(|law| law.added).collect();
-    let mut beside = theta.clone();
-    found.moved.iter().for_each(|&(p, value)| beside[p] = value);
-    let started = |starts| Model { theta: beside.clone(), starts, added: added.clone() };
+    let mut moved = theta.clone();
+    found.moved.iter().for_each(|&(p, value)| moved[p] = value);
+    let started = |starts| Model { theta: moved.clone(), starts, added: added.clone() };
     let models = [started(found.starts.clone()), started(prepared.start.starts.clone())];
     let run = |model: Model| problem.simulate(&model, Grain::Fine).map(|y| (model, y));
     // a free run does not forget the noise that a filter has at its start

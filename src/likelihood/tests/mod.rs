@@ -2,6 +2,7 @@
 #![allow(clippy::single_range_in_vec_init)] // a record of one segment
 
 mod ahead;
+mod all_parameters;
 mod direct;
 mod filter;
 mod held_out;
@@ -18,4 +19,3 @@ mod stationary;
 mod steady;
 mod suspected;
 mod tangent;
-mod together;

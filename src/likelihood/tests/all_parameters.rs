@@ -53,7 +53,7 @@ fn explained(share: f64, seed: u64) -> Explanation {
 }
 
 #[test]
-fn parameters_that_are_all_a_little_wrong_are_told_and_no_law() {
+fn parameters_that_are_all_a_little_wrong_are_named_and_no_law() {
     let found = explained(0.08, 1);
     assert!(found.causes.len() > 2, "{:?}", found.causes);
     for cause in &found.causes {
@@ -94,7 +94,7 @@ fn the_evidence_of_a_parameter_is_the_ratio_of_two_densities() {
 
 /// Friction beside a mass and a damping that are both off: a law of more numbers can do what they do.
 #[test]
-fn friction_beside_parameters_that_are_off_is_friction_and_they_are_told() {
+fn friction_where_parameters_are_off_is_friction_and_they_are_named() {
     let friction = "into = \"on_slide\"\nof = \"speed\"\neffect.coulomb_friction = { level = -2.0, width = 0.05 }";
     let sizes = Sizes { white: vec![2.0], measurement: vec![0.002], ..Sizes::default() };
     let text = SLIDE.replace("value = 3.0", "value = 2.7").replace("value = 6.0", "value = 6.6");

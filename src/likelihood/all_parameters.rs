@@ -44,7 +44,11 @@ impl Predictor {
 
     /// The causes after the exchange of single parameters for all of them, or of all for those that moved; whether
     /// that is more probable.
-    pub(super) fn put_together(&self, found: &mut Vec<Found>, now: &mut Hypothesis) -> bool {
+    pub(super) fn parameters_exchanged(
+        &self,
+        found: &mut Vec<Found>,
+        now: &mut Hypothesis,
+    ) -> bool {
         let before = self.merit(now, found);
         let others = self.other_hypothesis(found, now);
         let Some((mut causes, from)) = others.filter(|(causes, _)| !causes.is_empty()) else {
@@ -65,7 +69,7 @@ impl Predictor {
 
     /// The hypothesis of the same laws with all free parameters moved, fitted, and how much more probable it is, as a
     /// logarithm of odds.
-    pub(super) fn fitted_together(
+    pub(super) fn fitted_with_all_parameters(
         &self,
         found: &[Found],
         now: &Hypothesis,
@@ -84,9 +88,9 @@ impl Predictor {
         now: &Hypothesis,
     ) -> Option<(Vec<Found>, Hypothesis)> {
         let Some(all) = found.iter().find(|cause| cause.is_all_parameters()) else {
-            return self.beside_all_parameters(found, now);
+            return self.with_all_parameters(found, now);
         };
-        let mut causes = laws_alone(found);
+        let mut causes = laws_only(found);
         let mut theta = now.theta.clone();
         for (p, chance) in all.moves().zip(self.chances_moved(found, now)?) {
             if chance > 0.5 {
@@ -102,7 +106,7 @@ impl Predictor {
 
     /// The laws of some causes beside all free parameters, and where their fit begins; `None` where there is but one
     /// parameter, or all of them are causes already.
-    pub(super) fn beside_all_parameters(
+    pub(super) fn with_all_parameters(
         &self,
         found: &[Found],
         now: &Hypothesis,
@@ -112,7 +116,7 @@ impl Predictor {
         if free.len() < 2 || moved >= free.len() {
             return None;
         }
-        let mut causes = laws_alone(found);
+        let mut causes = laws_only(found);
         let parts = free.into_iter().map(Part::Parameter).collect();
         causes.push(Found { parts, ..self.as_cause((Site::Parameters, None)) });
         let parts = joined(&causes);
@@ -167,6 +171,6 @@ impl Predictor {
 }
 
 /// Causes that move no parameter.
-fn laws_alone(found: &[Found]) -> Vec<Found> {
+fn laws_only(found: &[Found]) -> Vec<Found> {
     found.iter().filter(|cause| cause.moves().count() == 0).cloned().collect()
 }
