@@ -4,6 +4,7 @@
 
 mod accelerometer;
 mod arm;
+mod asymmetric_friction;
 mod clocks;
 mod data_faults;
 mod disturbed;

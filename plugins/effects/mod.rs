@@ -1,5 +1,6 @@
 //! Effects: what a model may lack.
 
+pub mod asymmetric_coulomb;
 pub mod backlash;
 pub mod bias;
 pub mod coulomb_friction;
