@@ -7,7 +7,7 @@ use super::predictor::Predictor;
 use super::racing::RACED;
 use super::ranked::FittedLaws;
 use super::tangent::Site;
-use super::weigh::{Weighed, log_choose};
+use super::weigh::{Weighed, log_sets};
 
 /// Laws of a place that may be chosen in the place of others, at most, and beside them all that are plainer.
 const LAWS: usize = 8;
@@ -50,9 +50,10 @@ pub(crate) fn dealt(found: &mut [Found], of: &Hypothesis) {
 impl Found {
     /// Takes one of its laws out; what is left was chosen among smaller sets.
     pub(super) fn remove(&mut self, part: usize) -> Part {
-        let sets = |count: usize| log_choose(self.among, count);
-        self.choice += sets(self.parts.len() - 1) - sets(self.parts.len());
-        self.parts.remove(part)
+        let before = log_sets(&self.parts, self.place.1, self.among);
+        let gone = self.parts.remove(part);
+        self.choice += log_sets(&self.parts, self.place.1, self.among) - before;
+        gone
     }
 
     /// Takes the probability that `gain`, a logarithm of odds, leaves it against what it was weighed against alone.

@@ -66,10 +66,11 @@ impl Predictor {
             .map(|(hypothesis, spot)| {
                 let spot = &spots[spot];
                 let among = count(spot).max(1.0);
-                let choice = (spots.len() as f64).ln() + log_choose(among, hypothesis.parts.len());
+                let place = spot.place();
+                let sets = log_sets(&hypothesis.parts, place.1, among);
+                let choice = (spots.len() as f64).ln() + sets;
                 let prior = self.log_prior(&hypothesis);
                 let log_odds = hypothesis.criterion(samples) + prior - base - choice;
-                let place = spot.place();
                 Weighed { hypothesis, place, choice, among, log_odds, probability: 0.0 }
             })
             .collect();
@@ -100,8 +101,12 @@ impl Predictor {
     }
 }
 
-/// ln of the number of sets of `k` out of `n`.
-pub(super) fn log_choose(n: f64, k: usize) -> f64 {
+/// ln of the number of sets of as many laws of a place with coordinate `of`, where it may have `n`: all of that size, an
+/// offset of its channel beside them or none.
+pub(super) fn log_sets(parts: &[Part], of: Option<usize>, n: f64) -> f64 {
+    let is_own = |part: &&Part| !matches!(part, Part::Law { source, .. } if *source != of);
+    let k = parts.iter().filter(is_own).count();
+    let offset = if k < parts.len() { 2.0_f64.ln() } else { 0.0 };
     let k = k.min(n as usize);
-    (0..k).map(|i| ((n - i as f64) / (i as f64 + 1.0)).ln()).sum()
+    offset + (0..k).map(|i| ((n - i as f64) / (i as f64 + 1.0)).ln()).sum::<f64>()
 }
