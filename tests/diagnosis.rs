@@ -4,7 +4,6 @@
 
 mod accelerometer;
 mod arm;
-mod asymmetric_friction;
 mod clocks;
 mod data_faults;
 mod disturbed;

@@ -1,6 +1,5 @@
 //! Effects: what a model may lack.
 
-pub mod asymmetric_coulomb;
 pub mod backlash;
 pub mod bias;
 pub mod coulomb_friction;

@@ -40,7 +40,6 @@ fn models_and_effects_with_parameters_and_units() {
         "quintic",
         "drag",
         "coulomb_friction",
-        "asymmetric_coulomb",
         "stribeck_friction",
         "dead_zone",
         "stop",

@@ -27,13 +27,6 @@ pub enum Size {
         /// Name of the coefficient per unit of it.
         by: &'static str,
     },
-    /// As a size for each sign of the coordinate.
-    ByDirection {
-        /// Name of the coefficient where it is positive.
-        forward: &'static str,
-        /// Name of the coefficient where it is negative.
-        backward: &'static str,
-    },
     /// By the sum of two coefficients, where a record tells the sum better than either.
     Total([&'static str; 2]),
 }

@@ -5,7 +5,7 @@
 //! value plus w. So an offset of -0.08 rad on `angle` reads 0.08 rad too low.
 
 use super::column;
-use super::size::{by_direction, factor, found_shape, gap, growing, origin, unresolved, wave};
+use super::size::{factor, found_shape, gap, growing, origin, unresolved, wave};
 use super::stated::{HALF, amplitude, headline_value};
 use crate::diagnose::{ActsWhere, Cause, InRecord, LawPart, MostLike, Site, Value, Wording};
 use crate::digits::{interval, number, percent, spaced, with_unit};
@@ -49,10 +49,7 @@ pub fn is_resolved(cause: &Cause) -> bool {
     }
     let stated = match wording.size {
         Size::Wave { sine, cosine, .. } => amplitude(cause, sine, cosine),
-        Size::Growing { unloaded: one, by: other }
-        | Size::ByDirection { forward: one, backward: other } => {
-            return is_either_resolved(cause, [one, other]);
-        }
+        Size::Growing { unloaded, by } => return is_either_resolved(cause, [unloaded, by]),
         _ => headline_value(cause).map(|v| match wording.site {
             Site::Parameter => (v.value - wording.nominal.unwrap_or(0.0), v.std_error),
             _ => (v.value, v.std_error),
@@ -172,7 +169,6 @@ fn size(cause: &Cause) -> String {
         Size::Wave { order, sine, cosine } => wave(cause, order, sine, cosine),
         Size::Factor(name) => factor(cause, name),
         Size::Growing { unloaded, by } => growing(cause, unloaded, by),
-        Size::ByDirection { forward, backward } => by_direction(cause, forward, backward),
         Size::First | Size::Total(_) => match headline_value(cause) {
             Some(v) if wording.first.is_some() => format!(", {}{}", first(cause, v), gap(cause)),
             _ => {

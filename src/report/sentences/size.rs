@@ -144,16 +144,6 @@ pub(super) fn growing(cause: &Cause, unloaded: &str, by: &str) -> String {
     format!(", {} and {} of {load}", magnitude(unloaded), magnitude(by))
 }
 
-/// Friction that differs by direction: `, 520 +- 3 N forward and 1050 +- 4 N backward`.
-pub(super) fn by_direction(cause: &Cause, forward: &str, backward: &str) -> String {
-    let find = |name: &str| cause.parameters.iter().find(|v| v.name == name);
-    let (Some(forward), Some(backward)) = (find(forward), find(backward)) else {
-        return String::new();
-    };
-    let magnitude = |v: &Value| interval(v.value.abs(), v.std_error, &v.unit);
-    format!(", {} forward and {} backward", magnitude(forward), magnitude(backward))
-}
-
 /// The range in which the law is lost: ` lost within 0.0196 +- 0.0005 rad of zero`.
 pub(super) fn gap(cause: &Cause) -> String {
     let own = cause.parameters.iter().find(|v| cause.wording.gap.as_ref() == Some(&v.name));
