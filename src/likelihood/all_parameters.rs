@@ -49,59 +49,63 @@ impl Predictor {
         found: &mut Vec<Found>,
         now: &mut Hypothesis,
     ) -> bool {
-        let before = self.merit(now, found);
-        let others = self.other_hypothesis(found, now);
-        let Some((mut causes, from)) = others.filter(|(causes, _)| !causes.is_empty()) else {
+        let Some((mut causes, fitted, gain)) = self.fitted_otherwise(found, now) else {
             return false;
         };
-        let Some(fitted) = self.fit_all_raced(&mut causes, &from, before) else { return false };
-        let gain = self.merit(&fitted, &causes) - before;
         if !(gain > 0.0) {
             return false;
         }
-        causes.iter_mut().filter(|cause| cause.moves().count() > 0).for_each(|cause| {
+        for cause in causes.iter_mut().filter(|cause| cause.moves().count() > 0) {
+            // of one that moves in either hypothesis the other says how sure that is
+            let among_all = cause.law;
             cause.weighed_against_one(gain);
+            if !cause.is_all_parameters() {
+                cause.law += (1.0 - cause.law) * among_all;
+                cause.at_place = cause.law;
+            }
             cause.log_odds = gain;
-        });
+        }
         (*found, *now) = (causes, fitted);
         true
     }
 
-    /// The hypothesis of the same laws with all free parameters moved, fitted, and how much more probable it is, as a
-    /// logarithm of odds.
-    pub(super) fn fitted_with_all_parameters(
+    /// The same laws beside all free parameters, or beside those of them that moved where all are a cause, fitted, and
+    /// how much more probable that is, as a logarithm of odds; `None` where there is no such hypothesis.
+    pub(super) fn fitted_otherwise(
         &self,
         found: &[Found],
         now: &Hypothesis,
-    ) -> Option<(Hypothesis, f64)> {
+    ) -> Option<(Vec<Found>, Hypothesis, f64)> {
         let before = self.merit(now, found);
-        let (mut causes, from) = self.other_hypothesis(found, now)?;
+        let (mut causes, from) = match found.iter().find(|cause| cause.is_all_parameters()) {
+            Some(all) => self.with_those_that_moved(all, found, now)?,
+            None => self.with_all_parameters(found, now)?,
+        };
         let fitted = self.fit_all_raced(&mut causes, &from, before)?;
         let gain = self.merit(&fitted, &causes) - before;
-        Some((fitted, gain))
+        Some((causes, fitted, gain))
     }
 
-    /// The other of the two hypotheses, and where its fit begins; `None` where there is none.
-    fn other_hypothesis(
+    /// The laws of some causes beside those of all parameters that moved, with the probability that they did, and where
+    /// their fit begins; `None` where nothing is left.
+    fn with_those_that_moved(
         &self,
+        all: &Found,
         found: &[Found],
         now: &Hypothesis,
     ) -> Option<(Vec<Found>, Hypothesis)> {
-        let Some(all) = found.iter().find(|cause| cause.is_all_parameters()) else {
-            return self.with_all_parameters(found, now);
-        };
         let mut causes = laws_only(found);
         let mut theta = now.theta.clone();
-        for (p, chance) in all.moves().zip(self.chances_moved(found, now)?) {
-            if chance > 0.5 {
-                let place = (Site::Parameter(p), None);
-                causes.push(Found { parts: vec![Part::Parameter(p)], ..self.as_cause(place) });
+        for (p, law) in all.moves().zip(self.chances_moved(found, now)?) {
+            if law > 0.5 {
+                let parts = vec![Part::Parameter(p)];
+                causes.push(Found { parts, law, ..self.as_cause((Site::Parameter(p), None)) });
             } else {
                 theta[p] = self.model.theta[p];
             }
         }
         let parts = joined(&causes);
-        Some((causes, Hypothesis { parts, theta, ..now.clone() }))
+        (!parts.is_empty()).then(|| (causes, Hypothesis { parts, theta, ..now.clone() }))
     }
 
     /// The laws of some causes beside all free parameters, and where their fit begins; `None` where there is but one

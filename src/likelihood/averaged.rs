@@ -30,9 +30,8 @@ impl Predictor {
         if let Some(all) = found.iter().find(|cause| cause.is_all_parameters()) {
             return (named, all.law);
         }
-        let other =
-            (!found.is_empty()).then(|| self.fitted_with_all_parameters(found, now)).flatten();
-        let Some((other, gain)) = other else { return (named, 0.0) };
+        let other = (!found.is_empty()).then(|| self.fitted_otherwise(found, now)).flatten();
+        let Some((_, other, gain)) = other else { return (named, 0.0) };
         let chance = 1.0 / (1.0 + (-gain).exp());
         let run = self.evaluated(other.clone()).ok().filter(|_| chance > NONE);
         let Some((_, run)) = run else { return (named, 0.0) };
@@ -53,6 +52,8 @@ impl Predictor {
                 continue;
             };
             let off = values(other_part, &other) - values(part, now);
+            // a limit that it does not have is infinite in both
+            let off = off.map(|v| if v.is_finite() { v } else { 0.0 });
             all.push(own * (1.0 - chance) + (covariance + &off * off.transpose()) * chance);
         }
         (all, chance)

@@ -7,9 +7,9 @@
 //! until nothing more is probable, fitted together with the others too (`joint.rs`)
 //! a given law is weighed as one that is found (`given_weighed.rs`), and
 //! a law that is a parameter in disguise becomes the parameter (`exchange.rs`), a lag or a delay moves to another
-//! instrument (`instruments.rs`), all free parameters are one cause (`all_parameters.rs`), the pole of a slow force is chosen anew, with a constant or without
-//! (`steady.rs`), and so is the law of a place, the other causes being there (`joint.rs`), an improbable error of
-//! a parameter is taken back (`taken_back.rs`); then more causes
+//! instrument (`instruments.rs`), all free parameters are one cause (`all_parameters.rs`), the pole of a slow force
+//! is chosen anew, with a constant or without (`steady.rs`), and so is the law of a place, the other causes being
+//! there (`joint.rs`), an improbable error of a parameter is taken back (`taken_back.rs`); then more causes
 //! causes that are not needed beside the others are left out, those that held samples speak against withdrawn
 //! (`elimination.rs`); the rest fitted to all samples
 //! ```
