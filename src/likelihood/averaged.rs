@@ -6,6 +6,7 @@
 //!
 //! ```text
 //! covariance = (1 - w) C_named + w (C_other + (a_other - a_named)(a_other - a_named)')
+//! P(law)     = (1 - w) P_named + w P_named / (1 + 1 / odds),   odds of its own Wald statistic in the other hypothesis
 //! ```
 //!
 //! Source: Hoeting, Madigan, Raftery and Volinsky, "Bayesian model averaging", Statistical Science 14, 1999.
@@ -20,10 +21,11 @@ use super::predictor::Predictor;
 const NONE: f64 = 1e-3;
 
 impl Predictor {
-    /// The covariances of the parts of a hypothesis, and the probability that parameters have moved which it leaves.
+    /// The covariances of the parts of a hypothesis, and the probability that parameters have moved which it leaves. Its
+    /// causes are as sure then as in both together.
     pub(super) fn averaged(
         &self,
-        found: &[Found],
+        found: &mut [Found],
         now: &Hypothesis,
         named: Vec<DMatrix<f64>>,
     ) -> (Vec<DMatrix<f64>>, f64) {
@@ -31,7 +33,7 @@ impl Predictor {
             return (named, all.law);
         }
         let other = (!found.is_empty()).then(|| self.fitted_otherwise(found, now)).flatten();
-        let Some((_, other, gain)) = other else { return (named, 0.0) };
+        let Some((causes, other, gain)) = other else { return (named, 0.0) };
         let chance = 1.0 / (1.0 + (-gain).exp());
         let run = self.evaluated(other.clone()).ok().filter(|_| chance > NONE);
         let Some((_, run)) = run else { return (named, 0.0) };
@@ -55,6 +57,16 @@ impl Predictor {
             // a limit that it does not have is infinite in both
             let off = off.map(|v| if v.is_finite() { v } else { 0.0 });
             all.push(own * (1.0 - chance) + (covariance + &off * off.transpose()) * chance);
+        }
+        // laws stand in the same order in both
+        let mut others = others.iter();
+        let mut same_laws = causes.iter();
+        for cause in found.iter_mut().filter(|cause| cause.moves().count() == 0) {
+            let Some(same) = same_laws.next() else { break };
+            let own: Vec<_> = others.by_ref().take(same.parts.len()).cloned().collect();
+            let there = 1.0 / (1.0 + (-self.apparent(same, &other, &own)).exp());
+            let share = 1.0 - chance + chance * there;
+            (cause.law, cause.at_place) = (cause.law * share, cause.at_place * share);
         }
         (all, chance)
     }

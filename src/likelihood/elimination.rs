@@ -19,7 +19,7 @@ use rayon::prelude::*;
 
 use super::found::{Found, dealt};
 use super::held_out::refutes;
-use super::hypothesis::{Hypothesis, Part};
+use super::hypothesis::{Hypothesis, Part, numbers};
 use super::predictor::Predictor;
 use super::racing::RACED;
 use super::ranked::MISSING;
@@ -92,34 +92,10 @@ impl Predictor {
     ) -> Option<(usize, Hypothesis)> {
         let (_, run) = self.evaluated(now.clone()).ok()?;
         let mut covariances = self.covariances(now, &run).into_iter();
-        let each = 0.5 * self.observed().ln();
         let apparent = |cause: &Found| {
-            let own = cause.parts.iter().zip(covariances.by_ref());
-            let of = |(part, covariance): (&Part, DMatrix<f64>)| {
-                let (moved, covariance) = match part {
-                    Part::Parameter(p) => {
-                        (DVector::from_element(1, now.theta[*p] - null.theta[*p]), covariance)
-                    }
-                    Part::Law { law, .. } => {
-                        let own = law.coefficients();
-                        let value = |i: usize, _| law.values[own[i]];
-                        (
-                            DVector::from_fn(own.len(), value),
-                            covariance.select_rows(&own).select_columns(&own),
-                        )
-                    }
-                };
-                let wald = covariance.cholesky().map(|factor| moved.dot(&factor.solve(&moved)));
-                // what has no coefficient, or no covariance, cannot be judged so
-                wald.filter(|_| !moved.is_empty()).unwrap_or(f64::INFINITY)
-            };
-            if cause.is_all_parameters() {
-                return f64::INFINITY;
-            }
-            let is_law = |part: &&Part| matches!(part, Part::Law { .. });
-            let laws: Vec<Part> = cause.parts.iter().filter(is_law).cloned().collect();
-            let numbers = Hypothesis { parts: laws, ..now.clone() }.numbers();
-            0.5 * own.map(of).fold(0.0, f64::max) - each * numbers as f64 - cause.choice
+            let own: Vec<_> = covariances.by_ref().take(cause.parts.len()).collect();
+            // all of them together have no statistic of their own: they are left out to see
+            if cause.is_all_parameters() { f64::INFINITY } else { self.apparent(cause, now, &own) }
         };
         let apparent: Vec<f64> = found.iter().map(apparent).collect();
         let near = |&i: &usize| apparent[i] < MISSING;
@@ -128,6 +104,37 @@ impl Predictor {
         let rest = self.less(found, (now, null), least, f64::NEG_INFINITY)?;
         let merit = self.merit(&rest, found) + found[least].choice;
         (self.merit(now, found) - merit < MISSING).then_some((least, rest))
+    }
+
+    /// ln odds of a cause against its numbers at 0 (a parameter at its value) by its own standard errors; infinite where
+    /// it has no number of that kind, or no covariance.
+    pub(super) fn apparent(
+        &self,
+        cause: &Found,
+        of: &Hypothesis,
+        covariances: &[DMatrix<f64>],
+    ) -> f64 {
+        let wald = |(part, covariance): (&Part, &DMatrix<f64>)| {
+            let (moved, covariance) = match part {
+                Part::Parameter(p) => (
+                    DVector::from_element(1, of.theta[*p] - self.model.theta[*p]),
+                    covariance.clone(),
+                ),
+                Part::Law { law, .. } => {
+                    let own = law.coefficients();
+                    (
+                        DVector::from_fn(own.len(), |i, _| law.values[own[i]]),
+                        covariance.select_rows(&own).select_columns(&own),
+                    )
+                }
+            };
+            let wald = covariance.cholesky().map(|factor| moved.dot(&factor.solve(&moved)));
+            wald.filter(|_| !moved.is_empty()).unwrap_or(f64::INFINITY)
+        };
+        let is_law = |part: &&Part| matches!(part, Part::Law { .. });
+        let laws: Vec<Part> = cause.parts.iter().filter(is_law).cloned().collect();
+        let most = cause.parts.iter().zip(covariances).map(wald).fold(0.0, f64::max);
+        0.5 * (most - numbers(&laws) as f64 * self.observed().ln()) - cause.choice
     }
 
     /// The cause that held samples speak against most, and the rest; `fit` does not see these samples.

@@ -193,7 +193,7 @@ impl Predictor {
             (now, run) = self.evaluated(Hypothesis { noise, ..now })?;
         }
         let covariances = self.covariances(&now, &run);
-        let (covariances, doubt) = self.averaged(&found, &now, covariances);
+        let (covariances, doubt) = self.averaged(&mut found, &now, covariances);
         let pass = Pass::of(&run.path, &now.noise, true);
         let smoothed = pass.smoothed(&run.path, &now.noise);
         let nx = self.start.p0.len();

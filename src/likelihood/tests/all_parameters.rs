@@ -121,3 +121,36 @@ fn friction_where_parameters_are_off_is_friction_and_they_are_named() {
         }
     }
 }
+
+/// Standard error of the friction of a slide whose model has m and b smaller by a share, and the probability that
+/// parameters are off which are not named.
+fn friction(off: f64, seed: u64) -> (f64, f64, f64) {
+    let friction = "into = \"on_slide\"\nof = \"speed\"\neffect.coulomb_friction = { level = -2.0, width = 0.05 }";
+    let sizes = Sizes { white: vec![2.0], measurement: vec![0.002], ..Sizes::default() };
+    let at = |value: f64| format!("value = {}", value * (1.0 - off));
+    let text = SLIDE.replace("value = 3.0", &at(3.0)).replace("value = 6.0", &at(6.0));
+    let record =
+        simulate(&with(SLIDE, friction), &excitation(1500, 0.02, 8.0, seed), &sizes, 80 + seed);
+    let predictor = Predictor::new(&system(&text), &[record]).unwrap();
+    let given = Given { laws: with(SLIDE, friction).effects, ..Given::default() };
+    let found = predictor.explain((&given, 2), &[], None, &|| false).unwrap();
+    let cause = found.causes.iter().find(|cause| cause.into == "on_slide").unwrap();
+    let level = cause.laws[0].effect.card().values()[0];
+    (level, cause.std_error(0, 0).unwrap(), found.doubt)
+}
+
+#[test]
+fn errors_allow_for_parameters_by_how_probable_it_is_that_they_moved() {
+    let (right, off): (Vec<_>, Vec<_>) =
+        (1..7).map(|s| (friction(0.0, s), friction(0.02, s))).unzip();
+    for (level, error, doubt) in &right {
+        assert!((level + 2.0).abs() < 3.5 * error && *doubt < 0.1, "{right:?}");
+    }
+    for (level, error, _) in &off {
+        assert!((level + 2.0).abs() < 3.5 * error, "{off:?}");
+    }
+    // the doubt widens an interval
+    assert!(off.iter().any(|(_, _, doubt)| *doubt > 0.1), "{off:?}");
+    let mean = |all: &[(f64, f64, f64)]| all.iter().map(|(_, error, _)| error).sum::<f64>();
+    assert!(mean(&off) > 1.1 * mean(&right), "{off:?} {right:?}");
+}
