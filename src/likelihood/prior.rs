@@ -116,6 +116,9 @@ impl Predictor {
         let narrower = DMatrix::from_fn(p.len(), p.len(), |i, j| {
             f64::from(u8::from(i == j)) + width(i) * own[(i, j)] * width(j)
         });
+        if !narrower.iter().all(|v| v.is_finite()) {
+            return unknown + p.len() as f64 * most;
+        }
         let values = narrower.symmetric_eigenvalues();
         unknown + values.iter().map(|v| (0.5 * v.max(1.0).ln()).min(most)).sum::<f64>()
     }
