@@ -16,7 +16,7 @@ use nalgebra::DMatrix;
 use super::found::{Found, joined};
 use super::hypothesis::{Hypothesis, Part};
 use super::predictor::Predictor;
-use super::prior::has_moved;
+use super::prior::moved;
 use super::tangent::Site;
 
 impl Found {
@@ -77,9 +77,9 @@ impl Predictor {
         now: &Hypothesis,
     ) -> Option<(Vec<Found>, Hypothesis, f64)> {
         let before = self.merit(now, found);
-        let (mut causes, from) = match found.iter().find(|cause| cause.is_all_parameters()) {
-            Some(all) => self.with_those_that_moved(all, found, now)?,
-            None => self.with_all_parameters(found, now)?,
+        let (mut causes, from) = match found.iter().any(Found::is_all_parameters) {
+            true => self.with_those_that_moved(found, now)?,
+            false => self.with_all_parameters(found, now)?,
         };
         let fitted = self.fit_all_raced(&mut causes, &from, before)?;
         let gain = self.merit(&fitted, &causes) - before;
@@ -90,13 +90,12 @@ impl Predictor {
     /// their fit begins; `None` where nothing is left.
     fn with_those_that_moved(
         &self,
-        all: &Found,
         found: &[Found],
         now: &Hypothesis,
     ) -> Option<(Vec<Found>, Hypothesis)> {
         let mut causes = laws_only(found);
         let mut theta = now.theta.clone();
-        for (p, law) in all.moves().zip(self.chances_moved(found, now)?) {
+        for (p, law) in self.chances_moved(now)? {
             if law > 0.5 {
                 let parts = vec![Part::Parameter(p)];
                 causes.push(Found { parts, law, ..self.as_cause((Site::Parameter(p), None)) });
@@ -116,8 +115,8 @@ impl Predictor {
         now: &Hypothesis,
     ) -> Option<(Vec<Found>, Hypothesis)> {
         let free = self.free_parameters();
-        let moved: usize = found.iter().map(|cause| cause.moves().count()).sum();
-        if free.len() < 2 || moved >= free.len() {
+        let causes: usize = found.iter().map(|cause| cause.moves().count()).sum();
+        if free.len() < 2 || causes >= free.len() {
             return None;
         }
         let mut causes = laws_only(found);
@@ -136,13 +135,12 @@ impl Predictor {
         theta: &[f64],
     ) -> (Vec<(Found, Vec<DMatrix<f64>>)>, Vec<(usize, f64)>) {
         let chance = |(p, covariance): (usize, DMatrix<f64>)| {
-            let chance = has_moved(theta[p], self.model.theta[p], covariance[(0, 0)].sqrt());
-            (p, chance, covariance)
+            (p, moved(theta[p], self.model.theta[p], covariance[(0, 0)].sqrt()), covariance)
         };
         let mut own: Vec<_> = all.moves().zip(covariances).map(chance).collect();
         own.sort_by(|a, b| b.1.total_cmp(&a.1));
-        let moved = own.iter().take_while(|(_, chance, _)| *chance > 0.5).count().max(least);
-        let others = own.split_off(moved.min(own.len()));
+        let count = own.iter().take_while(|(_, chance, _)| *chance > 0.5).count().max(least);
+        let others = own.split_off(count.min(own.len()));
         let single = |(p, chance, covariance): (usize, f64, DMatrix<f64>)| {
             let cause = Found {
                 parts: vec![Part::Parameter(p)],
@@ -157,20 +155,17 @@ impl Predictor {
         (own.into_iter().map(single).collect(), values)
     }
 
-    /// Probability that each of all free parameters moved, where those are a cause.
-    fn chances_moved(&self, found: &[Found], now: &Hypothesis) -> Option<Vec<f64>> {
-        let (_, run) = self.evaluated(now.clone()).ok()?;
-        let mut covariances = self.covariances(now, &run).into_iter();
-        let mut own: Vec<(&Found, Vec<DMatrix<f64>>)> = found
-            .iter()
-            .map(|cause| (cause, covariances.by_ref().take(cause.parts.len()).collect()))
-            .collect();
-        let (all, errors) =
-            own.swap_remove(own.iter().position(|(cause, _)| cause.is_all_parameters())?);
-        let chance = |(p, covariance): (usize, DMatrix<f64>)| {
-            has_moved(now.theta[p], self.model.theta[p], covariance[(0, 0)].sqrt())
+    /// The parameters of a hypothesis, with the probability that each moved.
+    fn chances_moved(&self, of: &Hypothesis) -> Option<Vec<(usize, f64)>> {
+        let (_, run) = self.evaluated(of.clone()).ok()?;
+        let both = of.parts.iter().zip(self.covariances(of, &run));
+        let chance = |(part, covariance): (&Part, DMatrix<f64>)| match part {
+            Part::Parameter(p) => {
+                Some((*p, moved(of.theta[*p], self.model.theta[*p], covariance[(0, 0)].sqrt())))
+            }
+            Part::Law { .. } => None,
         };
-        Some(all.moves().zip(errors).map(chance).collect())
+        Some(both.filter_map(chance).collect())
     }
 }
 

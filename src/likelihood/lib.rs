@@ -59,6 +59,7 @@ mod ranked;
 mod remembering;
 mod replay;
 mod rows;
+mod savage_dickey;
 mod scope;
 mod screen;
 mod select;
@@ -93,6 +94,7 @@ pub use self::{
     output_noise::OutputNoise,
     predictor::Innovations,
     ranked::{FittedLaws, RankedPlace},
+    savage_dickey::has_moved,
     scope::Scope,
 };
 

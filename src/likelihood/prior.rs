@@ -25,6 +25,7 @@ use nalgebra::{DMatrix, DVector};
 use super::given::Given;
 use super::hypothesis::{Hypothesis, Part};
 use super::predictor::Predictor;
+use super::savage_dickey::has_moved;
 
 /// Relative error of a parameter that is usual.
 const USUAL: f64 = 0.15;
@@ -50,15 +51,9 @@ fn usual(value: f64, nominal: f64) -> Option<(f64, f64)> {
     }
 }
 
-/// Probability that a parameter moved, where moved and stayed are as probable before, and its value is known within a
-/// standard error: the densities of prior and posterior where it would have stayed, both Gaussian (Dickey, Annals of
-/// Mathematical Statistics 42, 1971).
-pub(super) fn has_moved(value: f64, nominal: f64, error: f64) -> f64 {
-    let Some((size, _)) = usual(value, nominal) else { return 1.0 };
-    // what data say little of is known from the prior
-    let error = error.min(size);
-    let log_odds = (error / size).ln() + 0.5 * ((value - nominal) / error).powi(2);
-    1.0 / (1.0 + (-log_odds).exp())
+/// Probability that a parameter moved whose value is known within a standard error.
+pub(super) fn moved(value: f64, nominal: f64, error: f64) -> f64 {
+    usual(value, nominal).map_or(1.0, |(size, _)| has_moved(value - nominal, error, size))
 }
 
 impl Predictor {

@@ -9,7 +9,6 @@ mod coloured;
 mod estimated;
 mod laplace;
 mod prior;
-mod savage_dickey;
 mod sensor_sign;
 mod stretches;
 mod tails;
@@ -18,7 +17,6 @@ mod whitener;
 
 pub(crate) use laplace::occam;
 pub(crate) use prior::{Choices, price, width};
-pub(crate) use savage_dickey::has_moved;
 pub(crate) use sensor_sign::turns_a_sensor;
 pub(crate) use stretches::Stretches;
 pub(crate) use tails::Tails;

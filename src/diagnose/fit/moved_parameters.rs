@@ -2,7 +2,6 @@
 
 use crate::candidates::naming::{parameter_effect, title_of};
 use crate::error::DiagnoseError;
-use crate::evidence::has_moved;
 use crate::findings::cause::{Alternative, Cause, LawPart, Site, Value, Wording};
 use crate::findings::context::Context;
 use crate::findings::scoring::Scores;
@@ -12,6 +11,7 @@ use crate::fit::found::{Instead, SET};
 use crate::fit::nuisance::Key;
 use crate::fit::problem::Model;
 use crate::fit::refit::{Refit, Stop, refit_until};
+use crate::likelihood::has_moved;
 use crate::validate::false_discovery::{either, on_test};
 use crate::validate::test_error::removed;
 use crate::watch::Watch;

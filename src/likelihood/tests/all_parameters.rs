@@ -5,7 +5,7 @@ use crate::explanation::Explanation;
 use crate::given::Given;
 use crate::hypothesis::{Hypothesis, Part};
 use crate::predictor::Predictor;
-use crate::prior::has_moved;
+use crate::prior::moved;
 
 /// Two carts on springs: six parameters, two outputs.
 const CARTS: &str = r#"
@@ -31,6 +31,10 @@ coordinates = [{ name = "speed", unit = "m/s", value = "v1", quantity = "velocit
 /// The values of the carts, and of a model that has each of them off by some share, this way and that.
 const TRUE: [(&str, f64); 6] =
     [("m1", 1.0), ("m2", 0.6), ("k1", 5.0), ("k2", 3.0), ("c1", 0.5), ("c2", 0.3)];
+
+/// Friction of the slide.
+const FRICTION: &str =
+    "into = \"on_slide\"\nof = \"speed\"\neffect.coulomb_friction = { level = -2.0, width = 0.05 }";
 
 fn off_by(share: f64) -> String {
     let mut text = CARTS.to_string();
@@ -86,7 +90,7 @@ fn the_evidence_of_a_parameter_is_the_ratio_of_two_densities() {
         let odds = of(&free) - of(&held);
         let (_, run) = predictor.evaluated(free.clone()).unwrap();
         let error = predictor.covariances(&free, &run)[0][(0, 0)].sqrt();
-        let chance = has_moved(free.theta[1], theta[1], error);
+        let chance = moved(free.theta[1], theta[1], error);
         let ratio = (chance / (1.0 - chance)).ln();
         assert!((odds - ratio).abs() < 0.6, "{off}: {odds} {ratio}");
     }
@@ -95,12 +99,11 @@ fn the_evidence_of_a_parameter_is_the_ratio_of_two_densities() {
 /// Friction beside a mass and a damping that are both off: a law of more numbers can do what they do.
 #[test]
 fn friction_where_parameters_are_off_is_friction_and_they_are_named() {
-    let friction = "into = \"on_slide\"\nof = \"speed\"\neffect.coulomb_friction = { level = -2.0, width = 0.05 }";
     let sizes = Sizes { white: vec![2.0], measurement: vec![0.002], ..Sizes::default() };
     let text = SLIDE.replace("value = 3.0", "value = 2.7").replace("value = 6.0", "value = 6.6");
     for seed in 1..5 {
         let record =
-            simulate(&with(SLIDE, friction), &excitation(1500, 0.02, 8.0, seed), &sizes, 90 + seed);
+            simulate(&with(SLIDE, FRICTION), &excitation(1500, 0.02, 8.0, seed), &sizes, 90 + seed);
         let predictor = Predictor::new(&system(&text), &[record]).unwrap();
         let found = predictor.explain((&Given::default(), 4), &[], None, &|| false).unwrap();
         let mut names: Vec<&str> = found.causes.iter().map(|cause| &cause.into[..]).collect();
@@ -125,14 +128,13 @@ fn friction_where_parameters_are_off_is_friction_and_they_are_named() {
 /// Standard error of the friction of a slide whose model has m and b smaller by a share, and the probability that
 /// parameters are off which are not named.
 fn friction(off: f64, seed: u64) -> (f64, f64, f64) {
-    let friction = "into = \"on_slide\"\nof = \"speed\"\neffect.coulomb_friction = { level = -2.0, width = 0.05 }";
     let sizes = Sizes { white: vec![2.0], measurement: vec![0.002], ..Sizes::default() };
     let at = |value: f64| format!("value = {}", value * (1.0 - off));
     let text = SLIDE.replace("value = 3.0", &at(3.0)).replace("value = 6.0", &at(6.0));
     let record =
-        simulate(&with(SLIDE, friction), &excitation(1500, 0.02, 8.0, seed), &sizes, 80 + seed);
+        simulate(&with(SLIDE, FRICTION), &excitation(1500, 0.02, 8.0, seed), &sizes, 80 + seed);
     let predictor = Predictor::new(&system(&text), &[record]).unwrap();
-    let given = Given { laws: with(SLIDE, friction).effects, ..Given::default() };
+    let given = Given { laws: with(SLIDE, FRICTION).effects, ..Given::default() };
     let found = predictor.explain((&given, 2), &[], None, &|| false).unwrap();
     let cause = found.causes.iter().find(|cause| cause.into == "on_slide").unwrap();
     let level = cause.laws[0].effect.card().values()[0];

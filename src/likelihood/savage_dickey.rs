@@ -9,7 +9,7 @@
 
 /// Probability that a number moved, where moved and stayed are as probable before: it is `off` from where it
 /// began, known within a standard error, and was expected to be within `width` of it.
-pub(crate) fn has_moved(off: f64, error: f64, width: f64) -> f64 {
+pub fn has_moved(off: f64, error: f64, width: f64) -> f64 {
     // what data say little of is known from the prior
     let error = error.min(width);
     let log_odds = (error / width).ln() + 0.5 * (off / error).powi(2);
