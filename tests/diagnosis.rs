@@ -24,5 +24,6 @@ mod report;
 mod said;
 mod sensor_in_loop;
 mod shapeless;
+mod step_load;
 mod vehicles;
 mod written_effect;

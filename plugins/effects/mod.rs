@@ -20,6 +20,7 @@ pub mod network;
 pub mod parameter;
 pub mod polynomial;
 pub mod saturation;
+pub mod step;
 pub mod stop;
 pub mod stribeck_friction;
 

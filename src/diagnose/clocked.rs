@@ -16,6 +16,7 @@ use super::innovations::{criterion, free_run_criterion};
 use super::prepare::input_dependence::DEPENDS;
 use super::run::Chosen;
 use crate::data::Record;
+use crate::likelihood::probability;
 use crate::system::System;
 use crate::watch::Watch;
 
@@ -125,9 +126,9 @@ impl Diagnosis<'_> {
                 return to_blame(other);
             }
         }
-        let probability = 1.0 / (1.0 + (own - clock).exp());
+        let chance = probability(clock - own);
         let searched = self.measured(machine, records, test, watch)?;
-        let other = (probability > LOOK_ALIKE).then(|| fault.alternative(probability));
+        let other = (chance > LOOK_ALIKE).then(|| fault.alternative(chance));
         Ok((other.into_iter().fold(searched, Searched::or_else), false))
     }
 

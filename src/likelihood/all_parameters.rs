@@ -121,7 +121,12 @@ impl Predictor {
         }
         let mut causes = laws_only(found);
         let parts = free.into_iter().map(Part::Parameter).collect();
-        causes.push(Found { parts, ..self.as_cause((Site::Parameters, None)) });
+        let single = |cause: &Found| match cause.place.0 {
+            Site::Parameter(p) => Some((p, cause.law)),
+            _ => None,
+        };
+        let singles = found.iter().filter_map(single).collect();
+        causes.push(Found { parts, singles, ..self.as_cause((Site::Parameters, None)) });
         let parts = joined(&causes);
         Some((causes, Hypothesis { parts, ..now.clone() }))
     }
@@ -142,11 +147,14 @@ impl Predictor {
         let count = own.iter().take_while(|(_, chance, _)| *chance > 0.5).count().max(least);
         let others = own.split_off(count.min(own.len()));
         let single = |(p, chance, covariance): (usize, f64, DMatrix<f64>)| {
+            // in the other hypothesis, that of single ones, it is as probable as it was there
+            let there = all.singles.iter().find(|(q, _)| *q == p).map_or(0.0, |(_, law)| *law);
+            let law = all.law * chance + (1.0 - all.law) * there;
             let cause = Found {
                 parts: vec![Part::Parameter(p)],
                 place: (Site::Parameter(p), None),
-                law: all.law * chance,
-                at_place: all.law * chance,
+                law,
+                at_place: law,
                 ..all.clone()
             };
             (cause, vec![covariance])

@@ -16,6 +16,7 @@ use nalgebra::{DMatrix, DVector};
 use super::found::Found;
 use super::hypothesis::{Hypothesis, Part};
 use super::predictor::Predictor;
+use super::savage_dickey::probability;
 
 /// Less than this probability changes no error.
 const NONE: f64 = 1e-3;
@@ -34,7 +35,7 @@ impl Predictor {
         }
         let other = (!found.is_empty()).then(|| self.fitted_otherwise(found, now)).flatten();
         let Some((causes, other, gain)) = other else { return (named, 0.0) };
-        let chance = 1.0 / (1.0 + (-gain).exp());
+        let chance = probability(gain);
         let run = self.evaluated(other.clone()).ok().filter(|_| chance > NONE);
         let Some((_, run)) = run else { return (named, 0.0) };
         let others = self.covariances(&other, &run);
@@ -64,7 +65,7 @@ impl Predictor {
         for cause in found.iter_mut().filter(|cause| cause.moves().count() == 0) {
             let Some(same) = same_laws.next() else { break };
             let own: Vec<_> = others.by_ref().take(same.parts.len()).cloned().collect();
-            let there = 1.0 / (1.0 + (-self.apparent(same, &other, &own)).exp());
+            let there = probability(self.apparent(same, &other, &own));
             let share = 1.0 - chance + chance * there;
             (cause.law, cause.at_place) = (cause.law * share, cause.at_place * share);
         }

@@ -121,6 +121,7 @@ impl Predictor {
             chosen_again: true,
             given: false,
             disguised: vec![],
+            singles: vec![],
         }
     }
 }

@@ -33,6 +33,7 @@ use super::predictor::{Predictor, starts};
 use super::racing::RACED;
 use super::ranked::MISSING;
 use super::replay::Pass;
+use super::savage_dickey::probability;
 use super::tangent::Site;
 use super::weigh::{Weighed, plainest};
 
@@ -54,7 +55,7 @@ impl Predictor {
         let mut fit = self.blinded(held);
         let Begun { null, mut found, mut now } = fit.first_hypothesis(given, noise)?;
         let gain = fit.merit(&now, &found) - fit.merit(&null, &[]);
-        let nothing = if found.is_empty() { 1.0 } else { 1.0 / (1.0 + gain.exp()) };
+        let nothing = if found.is_empty() { 1.0 } else { probability(-gain) };
         let mut first = First { nothing, sets: vec![] };
         let (mut seen, mut elsewhere) = (BTreeSet::new(), vec![]);
         let is_far = |now: &Hypothesis, found: &[Found]| {
@@ -92,6 +93,11 @@ impl Predictor {
         let merit = fit.merit(&now, &found);
         let all = Self { start: fit.start.clone(), ..self.clone() };
         let mut withdrawn = vec![];
+        if !is_over()
+            && let Some(other) = all.otherwise((&found, &now), held, stop)
+        {
+            (found, now) = other;
+        }
         while !is_over()
             && let Some(worst) = all.refuted(&fit, &found, &now, &null, held)
         {

@@ -6,6 +6,7 @@ use super::places::Survey;
 use super::predictor::Predictor;
 use super::racing::RACED;
 use super::ranked::FittedLaws;
+use super::savage_dickey::probability;
 use super::tangent::Site;
 use super::weigh::{Weighed, log_sets};
 
@@ -31,6 +32,8 @@ pub(crate) struct Found {
     pub given: bool,
     /// Laws that may be a parameter in disguise: number of the part, parameter, probability.
     pub disguised: Vec<(usize, usize, f64)>,
+    /// Parameters that were causes of their own before all of them together, with their probabilities.
+    pub singles: Vec<(usize, f64)>,
 }
 
 /// All parts of causes, in their order.
@@ -58,7 +61,7 @@ impl Found {
 
     /// Takes the probability that `gain`, a logarithm of odds, leaves it against what it was weighed against alone.
     pub(super) fn weighed_against_one(&mut self, gain: f64) {
-        self.law = 1.0 / (1.0 + (-gain).exp());
+        self.law = probability(gain);
         self.at_place = self.law;
     }
 }
@@ -131,6 +134,7 @@ impl Predictor {
             chosen_again: false,
             given: false,
             disguised: vec![],
+            singles: vec![],
         }
     }
 }

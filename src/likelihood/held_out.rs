@@ -40,10 +40,23 @@ impl Predictor {
     /// Log density of held samples under a hypothesis, at the variances of its noise that are most likely
     /// there; `None` where it cannot be run.
     pub(crate) fn density(&self, of: &Hypothesis, held: &[Range<usize>]) -> Option<f64> {
+        self.densities(of, held).map(|(_, best)| best)
+    }
+
+    /// Whether held samples have other variances of the noise than the samples that a hypothesis was fitted to; `None`
+    /// where none are held, or it cannot be run.
+    pub(super) fn is_another_noise(&self, of: &Hypothesis, held: &[Range<usize>]) -> Option<bool> {
+        let samples = held.iter().map(Range::len).sum::<usize>() as f64;
+        let (own, best) = self.densities(of, held).filter(|_| samples > 0.0)?;
+        Some(best - own > 0.5 * of.noise.count() as f64 * samples.ln())
+    }
+
+    /// Log density of held samples at the noise of a hypothesis, and at the most likely variances.
+    fn densities(&self, of: &Hypothesis, held: &[Range<usize>]) -> Option<(f64, f64)> {
         let model = self.extended(&of.parts, &of.theta).ok()?;
         let wanted = Wanted { gate: Some(self.gate()), ..Wanted::default() };
         let mut noise = of.noise.clone();
-        let mut best = f64::NEG_INFINITY;
+        let (mut own, mut best) = (None, f64::NEG_INFINITY);
         for left in (0..NOISES).rev() {
             let run = self.run(&model, &noise, wanted).ok().filter(|r| r.diverged_at.is_none())?;
             let mut path = run.path;
@@ -52,12 +65,13 @@ impl Predictor {
             let is_held = |k: &usize| held.iter().any(|range| range.contains(k));
             let gated = run.outliers.iter().filter(|(_, k)| is_held(k));
             let gated: f64 = gated.map(|(o, k)| run.densities[k * ny + o]).sum();
-            best = best.max(gated + Pass::of(&path, &noise, false).log_likelihood);
+            let value = gated + Pass::of(&path, &noise, false).log_likelihood;
+            (own, best) = (own.or(Some(value)), best.max(value));
             if left > 0 {
                 noise = most_likely(&path, &noise, &noise.components()).0;
             }
         }
-        best.is_finite().then_some(best)
+        own.filter(|_| best.is_finite()).map(|own| (own, best))
     }
 }
 

@@ -72,7 +72,7 @@ impl Hypothesis {
 /// Numbers of parts.
 pub(crate) fn numbers(parts: &[Part]) -> usize {
     let one = |part: &Part| match part {
-        Part::Law { law, .. } => law.free.len(),
+        Part::Law { law, .. } => law.numbers(),
         Part::Parameter(_) => 1,
     };
     parts.iter().map(one).sum()

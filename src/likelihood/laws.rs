@@ -6,8 +6,8 @@
 //! a search (hysteresis).
 
 use crate::effect::{
-    CandidateEffect, EffectBlock, EffectCall, EffectCard, Mechanism, Needs, Role, Search, SignRule,
-    View,
+    CandidateEffect, EffectBlock, EffectCall, EffectCard, EffectParameter, Mechanism, Needs, Role,
+    Search, SignRule, View,
 };
 use crate::real::{F64x8, Real};
 use crate::register;
@@ -33,6 +33,8 @@ pub(crate) enum Spot {
     Channel { velocity: bool, angle: bool },
     /// An input or output, of itself.
     OwnPath { input: bool },
+    /// A channel, of time.
+    Time,
 }
 
 /// The laws of a coordinate at a spot, each at every point of its grid, those of a load with each that
@@ -42,6 +44,7 @@ pub(crate) fn laws(spot: Spot, view: &View, loads: &[usize]) -> Vec<Law> {
     for (own, effect) in register::effects() {
         let card = effect.card();
         let fits = match (spot, card.needs) {
+            (Spot::Time, needs) => needs == Needs::Time,
             (_, Needs::Coordinate) => true,
             (Spot::Channel { velocity, .. }, Needs::NoVelocity) => !velocity,
             (Spot::OwnPath { .. }, Needs::NoVelocity) => true,
@@ -61,7 +64,7 @@ pub(crate) fn laws(spot: Spot, view: &View, loads: &[usize]) -> Vec<Law> {
             continue;
         }
         let allowed = match spot {
-            Spot::Channel { .. } => card.places.channel,
+            Spot::Channel { .. } | Spot::Time => card.places.channel,
             Spot::OwnPath { input: true } => card.places.input,
             Spot::OwnPath { input: false } => card.places.output,
         };
@@ -162,6 +165,20 @@ impl Law {
         self.free.iter().filter(linear).copied().collect()
     }
 
+    /// Numbers that it is paid for: a moment is chosen among all samples, which takes twice as much as a number
+    /// (Zhang and Siegmund, Biometrics 63, 2007).
+    pub fn numbers(&self) -> usize {
+        self.free.len() + usize::from(self.card.properties.begins.is_some())
+    }
+
+    /// How finely a moment is told by a law that begins at it: half of what that takes.
+    fn resolution(&self, i: usize) -> Option<f64> {
+        let parameters = &self.card.parameters;
+        let begins = self.card.properties.begins.filter(|own| parameters[i].name == own.from)?;
+        let is_rise = |own: &EffectParameter| own.role == Role::Held && own.name != begins.from;
+        parameters.iter().position(is_rise).map(|rise| 0.5 * self.values[rise])
+    }
+
     /// One column per coefficient; a law without one is a column itself. `load` is the course of the second
     /// coordinate, empty where there is none.
     pub fn columns(&self, z: &[f64], load: &[f64]) -> Vec<Vec<f64>> {
@@ -224,7 +241,7 @@ impl Law {
                 let h = if linear {
                     1e-4 * parameter.abs().max(1e-4)
                 } else {
-                    1e-4 * parameter.abs().max(1e-9)
+                    self.resolution(i).unwrap_or_else(|| 1e-4 * parameter.abs().max(1e-9))
                 };
                 let at = |sign: f64| {
                     let mut values = self.values.clone();

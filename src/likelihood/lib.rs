@@ -40,6 +40,7 @@ mod intensities;
 mod joint;
 mod kalman;
 mod lacking;
+mod late;
 mod laws;
 mod linearisations;
 mod local_level;
@@ -94,7 +95,7 @@ pub use self::{
     output_noise::OutputNoise,
     predictor::Innovations,
     ranked::{FittedLaws, RankedPlace},
-    savage_dickey::has_moved,
+    savage_dickey::{has_moved, probability},
     scope::Scope,
 };
 

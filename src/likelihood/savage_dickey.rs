@@ -13,6 +13,11 @@ pub fn has_moved(off: f64, error: f64, width: f64) -> f64 {
     // what data say little of is known from the prior
     let error = error.min(width);
     let log_odds = (error / width).ln() + 0.5 * (off / error).powi(2);
+    probability(log_odds)
+}
+
+/// The probability of what has these odds, as their natural logarithm.
+pub fn probability(log_odds: f64) -> f64 {
     1.0 / (1.0 + (-log_odds).exp())
 }
 

@@ -89,11 +89,12 @@ impl Predictor {
             let laws = laws.map(|law| law.signed(direction)).collect();
             let remembering = match spot {
                 Spot::OwnPath { input } => of_an_instrument(input, &view),
-                Spot::Channel { .. } => vec![],
+                Spot::Channel { .. } | Spot::Time => vec![],
             };
             let is_asked = |law: &Law| self.scope.effect(law.name);
             let remembering = remembering.into_iter().filter(is_asked).collect();
-            let knots = knots(&z).unwrap_or_default();
+            // a free curve of time is the slow force
+            let knots = if spot == Spot::Time { None } else { knots(&z) }.unwrap_or_default();
             Spotted { site, source, z, knots, laws, remembering, loads, scale }
         };
         let channel = |e| Spot::Channel { velocity: plan.is_velocity(e), angle: plan.is_angle(e) };
@@ -116,6 +117,9 @@ impl Predictor {
                 let direction = Some(moved_here[e]).filter(|d| d.abs() > DIRECT * most);
                 found.push(push(Site::Force(site), Some(e), z, spot, scales[site], direction));
             }
+            let (time, own) = (plan.sources.named - 1, scales[c]);
+            let z = column(&path.seen, entries, time);
+            found.push(push(Site::Force(c), Some(time), z, Spot::Time, own, None));
         }
         for o in (0..ny).filter(|&o| self.spread[o] > 0.0) {
             let source = plan.sources.at(Origin::Output(o));

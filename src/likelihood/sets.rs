@@ -54,7 +54,7 @@ pub(crate) fn sets(
     let samples = pass.z.iter().filter(|z| z.is_finite()).count().max(1) as f64;
     let gain = |set: &[usize]| {
         let columns = joined(set);
-        let numbers: usize = set.iter().map(|&e| entries[e].law.free.len()).sum();
+        let numbers: usize = set.iter().map(|&e| entries[e].law.numbers()).sum();
         let raised = solved(&sums.square, &sums.slope, &columns).map_or(0.0, |s| s.0);
         raised - 0.5 * numbers as f64 * samples.ln()
     };

@@ -84,7 +84,7 @@ pub fn working(effect: &dyn CandidateEffect) -> Box<dyn CandidateEffect> {
         .parameters
         .iter()
         .map(|effect_parameter| match effect_parameter.role {
-            Role::Choice => effect_parameter.value,
+            Role::Choice | Role::Held => effect_parameter.value,
             Role::Origin => 0.2,
             // lags and delays of a few samples, bounds near the signal, small forces
             Role::Coefficient => 0.03_f64.clamp(effect_parameter.min, effect_parameter.max),
@@ -113,7 +113,7 @@ pub fn neutral(effect: &dyn CandidateEffect) -> Vec<Box<dyn CandidateEffect>> {
         effect_parameters
             .map(|effect_parameter| match effect_parameter.role {
                 Role::Coefficient => coefficient.clamp(effect_parameter.min, effect_parameter.max),
-                Role::Choice | Role::Origin => effect_parameter.value,
+                Role::Choice | Role::Origin | Role::Held => effect_parameter.value,
                 Role::Shape => shape(effect_parameter),
             })
             .collect()

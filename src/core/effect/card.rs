@@ -53,6 +53,11 @@ impl EffectParameter {
         Self { role: Role::Origin, ..shape }
     }
 
+    /// A positive number that no fit moves.
+    pub fn held(name: impl Into<Cow<'static, str>>, value: f64, unit: UnitRule) -> Self {
+        Self { role: Role::Held, ..Self::shape(name, value, unit) }
+    }
+
     /// The same parameter with its allowed range.
     #[must_use]
     pub fn within(mut self, min: f64, max: f64) -> Self {

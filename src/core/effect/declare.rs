@@ -1,7 +1,7 @@
 //! Properties as an effect declares them on its card, one call each.
 
 use super::card::EffectCard;
-use super::properties::{ShapeOf, Size};
+use super::properties::{Begins, ShapeOf, Size};
 
 impl EffectCard {
     /// The same, unable to leave a range on its own path; see [`Properties::limits_output`](super::Properties::limits_output).
@@ -22,6 +22,13 @@ impl EffectCard {
     #[must_use]
     pub fn piecewise_linear(mut self) -> Self {
         self.properties.piecewise_linear = true;
+        self
+    }
+
+    /// The same, which is another law from a moment on; see [`Properties::begins`](super::Properties::begins).
+    #[must_use]
+    pub fn begins(mut self, from: &'static str, law: &'static str) -> Self {
+        self.properties.begins = Some(Begins { from, law });
         self
     }
 

@@ -19,7 +19,7 @@ mod written;
 
 pub use card::{EffectCard, EffectParameter, Named, Needs, Places, SignRule};
 pub use law::{Arguments, CandidateEffect, Effect};
-pub use properties::{ShapeOf, Size};
+pub use properties::{Begins, ShapeOf, Size};
 pub use search::Search;
 pub use unit::UnitRule;
 pub use view::View;

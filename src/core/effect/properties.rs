@@ -53,12 +53,23 @@ pub struct Properties {
     /// The fault of a column that is the same model, where it acts on the path of a signal: it was not the
     /// machine but its record.
     pub recorded_as: Option<&'static str>,
+    /// It begins within a record: the parameter that is the moment, and the law that it is from then on.
+    pub begins: Option<Begins>,
     /// It opposes a motion with a size of its own, so that its name says what it depends on.
     pub is_friction: bool,
     /// Its curve is free, or learned: it is found by other means than a law of the library.
     pub shape: ShapeOf,
     /// How its size is stated.
     pub size: Size,
+}
+
+/// What begins within a record, and when.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Begins {
+    /// The parameter that is the moment.
+    pub from: &'static str,
+    /// Name of the law that acts from then on.
+    pub law: &'static str,
 }
 
 /// Where the shape of an effect is from.

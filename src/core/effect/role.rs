@@ -13,6 +13,8 @@ pub enum Role {
     Choice,
     /// Value of the coordinate from which the effect counts it, as a search starts it; 0 goes without saying.
     Origin,
+    /// It stays as a search starts it.
+    Held,
 }
 
 impl Role {
@@ -29,6 +31,7 @@ impl fmt::Display for Role {
             Self::Shape => "shape",
             Self::Choice => "choice",
             Self::Origin => "origin",
+            Self::Held => "held",
         })
     }
 }

@@ -207,7 +207,9 @@ impl Plan {
         let parameter = self.signals.parameters.iter().position(|p| p.name == placed.into);
         match (card.mechanism, parameter, card.needs) {
             (Mechanism::Parameter, Some(p), _) => return Ok(Way::Value(p)),
-            (Mechanism::Law, Some(p), Needs::Time) => return Ok(Way::Drift(p)),
+            (Mechanism::Law, Some(p), Needs::Time) if card.places.parameter => {
+                return Ok(Way::Drift(p));
+            }
             _ => {}
         }
         let no_channel = |into: &str| SystemError::NoChannel {

@@ -2,7 +2,7 @@
 
 use crate::candidates::candidate::{Candidate, Preference, Wire};
 use crate::effect::{Mechanism, Named, Needs, Role};
-use crate::findings::cause::{Alternative, LawPart, Site, Unweighed, Value, Wording};
+use crate::findings::cause::{Alternative, LawPart, Onset, Site, Unweighed, Value, Wording};
 use crate::register;
 
 impl Candidate {
@@ -41,6 +41,21 @@ impl Candidate {
             units: self.units.clone(),
             ..Wording::default()
         }
+    }
+
+    /// Effect, place and coordinate of a cause that it heads: a law since a moment goes by that law, and has an onset.
+    pub fn heading(&self) -> (String, String, Option<String>) {
+        match self.card.properties.begins {
+            Some(begins) => (begins.law.into(), self.into.clone(), None),
+            None => self.name(),
+        }
+    }
+
+    /// When it begins, of its numbers.
+    pub fn onset(&self, values: &[Value]) -> Option<Onset> {
+        let begins = self.card.properties.begins?;
+        let from = values.iter().find(|own| own.name == begins.from)?;
+        Some(Onset { time: from.value, std_error: from.std_error })
     }
 
     /// It as another explanation, with the share of the removable error that it removes; not weighed

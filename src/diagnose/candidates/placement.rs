@@ -135,12 +135,17 @@ impl Builder<'_, '_> {
                 }
                 return;
             }
-            Needs::AngleOrTime if !on_path => {
+            Needs::AngleOrTime | Needs::Time => {
                 let time = self.time();
-                let spot = Spot { target, source: Some(time), own_path: false };
-                self.push(name, shape, card, spot, 0.0, None, twins(Some(time)));
+                // on the path of an input a law of time is one of the channels that push as it does
+                if !on_path || card.needs == Needs::Time {
+                    let spot = Spot { target, source: Some(time), own_path: false };
+                    self.push(name, shape, card, spot, 0.0, None, twins(Some(time)));
+                }
+                if card.needs == Needs::Time {
+                    return;
+                }
             }
-            Needs::Time => return,
             _ => {}
         }
         for &source in sources {

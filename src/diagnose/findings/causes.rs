@@ -44,7 +44,7 @@ impl Context<'_, '_> {
             let own = by_likeness(self.problem, self.nominal, model, own);
             let cause = &model.added[own[0]].cause;
             let laws = own.iter().map(|&i| model.added[i].cause.name()).collect();
-            let (effect, into, of) = cause.name();
+            let (effect, into, of) = cause.heading();
             let (indistinguishable, _) =
                 alternatives(cause, &chosen.found.slots[own[0]], 0.0, laws);
             Cause { effect, into, of, indistinguishable, ..Cause::default() }
@@ -93,25 +93,29 @@ impl Context<'_, '_> {
         }
         let laws: Vec<_> = own.iter().map(|&i| model.added[i].cause.name()).collect();
         let (indistinguishable, runners_up) = alternatives(cause, slot, share, laws);
+        let is_moment = |own: &Value| {
+            cause.card.properties.begins.is_some_and(|begins| own.name == begins.from)
+        };
         let records =
             bare.filter(|_| by.several).and_then(|bare| self.per_record(&bare, &chosen.y));
         let acts_where = self.acts_where(model, &own);
         parts[0].wording.rectifies = self.rectifies(model, &own);
         parts[0].wording.is_line_here = acts_where.is_none() && self.is_straight(model, &own);
+        let (effect, into, of) = cause.heading();
         Ok(Cause {
-            effect: cause.effect.into(),
-            into: cause.into.clone(),
-            of: cause.of.clone(),
+            effect,
+            into,
+            of,
             also_into: cause.also_into.iter().map(|a| a.channel().to_string()).collect(),
             also_of: cause.also_of.clone(),
-            parameters: values,
+            parameters: values.into_iter().filter(|own| !is_moment(own)).collect(),
             p_value,
             probability: slot.belief.as_ref().map(|belief| belief.law),
             place_probability: slot.belief.as_ref().map(|belief| belief.place),
             error_removed: share,
             indistinguishable,
             runners_up,
-            onset: None,
+            onset: cause.onset(&parts[0].parameters),
             acts_where,
             most_like: self.most_like(model, &own),
             records,

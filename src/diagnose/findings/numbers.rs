@@ -43,7 +43,9 @@ impl Context<'_, '_> {
             },
         );
         let is_said = |(parameter, value): &(&EffectParameter, f64)| {
-            value.is_finite() && (parameter.role != Role::Origin || *value != 0.0)
+            value.is_finite()
+                && parameter.role != Role::Held
+                && (parameter.role != Role::Origin || *value != 0.0)
         };
         let values =
             parameters.filter(|(_, both)| is_said(both)).map(|(i, (parameter, value))| Value {

@@ -125,7 +125,7 @@ impl Begun {
         for cause in &mut searched.causes {
             match &mut cause.rows {
                 Some(rows) => rows.iter_mut().for_each(|row| *row += first),
-                None => cause.onset = Some(moment.onset),
+                None => cause.onset = cause.onset.or(Some(moment.onset)),
             }
         }
         searched.notes.insert(0, Note::Begins { time: moment.onset.time, samples });

@@ -105,6 +105,7 @@ impl Made {
                 (Mechanism::Delay, _) => "the length of a delay decides how many states there are",
                 (_, Role::Choice) => "a variant has no slope",
                 (_, Role::Origin) => "an origin is where it was put",
+                (_, Role::Held) => "it stays as it was put",
                 _ if !effect_parameter.value.is_finite() => "an absent bound has no slope",
                 _ => "",
             };
