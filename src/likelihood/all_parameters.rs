@@ -4,7 +4,8 @@
 //! explains enough, and laws that do what some of them do together come first. Tried with all other causes there:
 //!
 //! ```text
-//! every free parameter                                  in the place of those that are causes of their own
+//! every free parameter                                  in the place of those that are causes of their own, and of
+//!                                                       laws that are not needed beside all of them
 //! those of them that moved, p(moved) > p(stayed)        in the place of all
 //! ```
 //!
@@ -13,8 +14,8 @@
 
 use nalgebra::DMatrix;
 
-use super::found::{Found, joined};
-use super::hypothesis::{Hypothesis, Part};
+use super::found::{Found, dealt, joined};
+use super::hypothesis::{Hypothesis, Part, numbers};
 use super::predictor::Predictor;
 use super::prior::moved;
 use super::tangent::Site;
@@ -43,15 +44,19 @@ impl Predictor {
     }
 
     /// The causes after the exchange of single parameters for all of them, or of all for those that moved; whether
-    /// that is more probable.
+    /// that is more probable; `null` has none of them.
     pub(super) fn parameters_exchanged(
         &self,
         found: &mut Vec<Found>,
         now: &mut Hypothesis,
+        null: &Hypothesis,
     ) -> bool {
-        let Some((mut causes, fitted, gain)) = self.fitted_otherwise(found, now) else {
+        let before = self.merit(now, found);
+        let Some((mut causes, mut fitted, _)) = self.fitted_otherwise(found, now) else {
             return false;
         };
+        self.leave_out_laws(&mut causes, &mut fitted, (before, null));
+        let gain = self.merit(&fitted, &causes) - before;
         if !(gain > 0.0) {
             return false;
         }
@@ -84,6 +89,34 @@ impl Predictor {
         let fitted = self.fit_all_raced(&mut causes, &from, before)?;
         let gain = self.merit(&fitted, &causes) - before;
         Some((causes, fitted, gain))
+    }
+
+    /// Leaves out laws that stood for what all parameters do, where that may bring the hypothesis past a merit.
+    fn leave_out_laws(
+        &self,
+        causes: &mut Vec<Found>,
+        fitted: &mut Hypothesis,
+        (before, null): (f64, &Hypothesis),
+    ) {
+        let laws = causes.iter().filter(|cause| cause.moves().count() == 0);
+        let paid = |cause: &Found| {
+            cause.choice + 0.5 * numbers(&cause.parts) as f64 * self.observed().ln()
+        };
+        let saved: f64 = laws.map(paid).sum();
+        if !causes.iter().any(Found::is_all_parameters)
+            || self.merit(fitted, causes) + saved < before
+        {
+            return;
+        }
+        while let Some((i, rest)) = self.least_needed(causes, (&*fitted, null)) {
+            let mut fewer = causes.clone();
+            fewer.remove(i);
+            dealt(&mut fewer, &rest);
+            if self.merit(&rest, &fewer) < self.merit(fitted, causes) {
+                return;
+            }
+            (*causes, *fitted) = (fewer, rest);
+        }
     }
 
     /// The laws of some causes beside those of all parameters that moved, with the probability that they did, and where

@@ -85,7 +85,7 @@ impl Predictor {
 
     /// The cause that is the least needed by its own standard errors, where a fit of the others says that it is not
     /// needed, and that fit.
-    fn least_needed(
+    pub(super) fn least_needed(
         &self,
         found: &[Found],
         (now, null): (&Hypothesis, &Hypothesis),

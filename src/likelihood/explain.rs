@@ -74,7 +74,7 @@ impl Predictor {
                         .moved_between_instruments(&mut found, &mut now, stop)
                         .map(|tried| elsewhere = tried)
                         .is_none()
-                    || !stop() && fit.parameters_exchanged(&mut found, &mut now)
+                    || !stop() && fit.parameters_exchanged(&mut found, &mut now, &null)
                     || fit.steadied((&mut found, &mut now), most, stop)
                     || fit.laws_anew(&mut found, &mut now, stop) && seen.insert(now.names())
                     || fit.taken_back(&mut found, &mut now, stop)

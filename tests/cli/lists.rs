@@ -50,6 +50,7 @@ fn models_and_effects_with_parameters_and_units() {
         "delay",
         "lag",
         "drift",
+        "step",
         "extra_mode",
         "parameter",
         "outliers",

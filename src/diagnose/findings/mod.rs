@@ -1,6 +1,7 @@
 //! What is reported: causes as plain data, and what records show beside them.
 
 pub(crate) mod active_range;
+mod by_direction;
 pub(crate) mod cause;
 pub(crate) mod causes;
 pub(crate) mod closed_loop;

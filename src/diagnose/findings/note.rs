@@ -1,5 +1,6 @@
 //! What else a diagnosis has to say, as data; `report` makes sentences of it.
 
+use crate::findings::value::Value;
 use crate::memory::Memory;
 
 /// One thing worth knowing beside the causes.
@@ -135,6 +136,15 @@ pub enum Note {
         into: String,
         /// The coordinate.
         of: Option<String>,
+    },
+    /// Dry friction and a constant of one channel are friction that differs by direction.
+    ByDirection {
+        /// The channel.
+        into: String,
+        /// The velocity.
+        of: Option<String>,
+        /// Friction where the velocity is positive, and where it is negative.
+        sides: [Value; 2],
     },
     /// A parameter that is held explains what is named as well, or better.
     Held {

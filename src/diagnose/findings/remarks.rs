@@ -1,6 +1,7 @@
 //! What was looked for and not found, and what else is worth knowing.
 
 use crate::candidates::candidate::{Candidate, Wire};
+use crate::findings::by_direction::by_direction;
 use crate::findings::cause::Cause;
 use crate::findings::context::Context;
 use crate::findings::finding::NotFound;
@@ -113,6 +114,7 @@ impl Context<'_, '_> {
                 }
             }
         }
+        notes.extend(by_direction(causes));
         notes
     }
 }

@@ -5,6 +5,7 @@
 
 mod cause;
 mod column;
+mod friction;
 mod inside;
 mod notes;
 mod nothing;

@@ -1,5 +1,6 @@
 //! What is worth knowing beside the causes, one paragraph each.
 
+use super::friction::{by_direction, keeps_its_sign, width_unresolved};
 use super::inside::{doubted, inside};
 use crate::diagnose::{AtLines, ClosedLoop, Distortion, Finding, Follows, Note, Regime, Released};
 use crate::digits::{interval, number, percent, rough, spaced, with_unit};
@@ -118,16 +119,11 @@ pub fn note(note: &Note) -> String {
              (prior: {}). Hold with --fix those that you are sure of.",
             percent(*prior)
         ),
-        Note::WidthUnresolved { into, at_most, unit } => format!(
-            "The record does not resolve how sharp the step at zero on {into} is: its width is at most \
-             about {}.",
-            rough(*at_most) + &spaced(unit)
-        ),
-        Note::KeepsItsSign { into, of } => format!(
-            "{} keeps its sign: while it moves, dry friction on {into} looks like an offset; only rest, \
-             starts and stops tell them apart.",
-            of.as_deref().unwrap_or("The velocity")
-        ),
+        Note::WidthUnresolved { into, at_most, unit } => width_unresolved(into, *at_most, unit),
+        Note::KeepsItsSign { into, of } => keeps_its_sign(into, of.as_deref()),
+        Note::ByDirection { into, of, sides: [forward, backward] } => {
+            by_direction(into, of.as_deref(), [forward, backward])
+        }
         Note::Held { released, odds, named } => held_instead(released, *odds, *named),
         Note::NoiseLevel { output, low, high, unit, follows, left_out } => {
             let how = match follows {
