@@ -24,7 +24,7 @@ impl Default for Step {
 }
 
 /// Moments that a search begins with, over the length of the record.
-const MOMENTS: usize = 48;
+const MOMENTS: usize = 16;
 
 impl Effect for Step {
     fn card(&self) -> EffectCard {
@@ -62,7 +62,9 @@ impl Effect for Step {
         card.parameters[2].value = view.sampling_time;
         let moment = |i: usize| view.quantile((i as f64 + 0.5) / MOMENTS as f64);
         let grid: Vec<f64> = (0..MOMENTS).map(moment).collect();
-        Search::plain(&card).over(&card, "from", &grid, (view.min(), view.max()))
+        let mut search = Search::plain(&card).over(&card, "from", &grid, (view.min(), view.max()));
+        search.thresholds = true;
+        search
     }
 }
 

@@ -5,6 +5,7 @@
 //! innovation beyond it moves nothing and is scored by the tail of Student's distribution.
 //! Sources: Jazwinski, "Stochastic Processes and Filtering Theory", 1970, ch. 8; Ljung, section 3.2.
 
+use super::earlier::{earlier, spread};
 use super::kalman::Kalman;
 use super::noise::{Layout, Noise};
 use super::parametrised::Model;
@@ -73,6 +74,7 @@ pub(crate) fn follow(
     let nt = if wanted.theta { model.theta.len() } else { 0 };
     let sources = if wanted.seen { model.plan.sources.entries.len() } else { 0 };
     let mut path = blank((n, nf, ny), (nt, sources), len, drive, start);
+    path.earlier = earlier(model, drive);
     path.d.resize(if direct { len * ny * nf } else { 0 }, 0.0);
     path.unread.resize(if wanted.seen { len * ny } else { 0 }, 0.0);
     let entries: Vec<Option<usize>> =
@@ -164,6 +166,7 @@ pub(crate) fn follow(
                 slow[i] *= part.pole;
             }
             kalman.predict(&to.a, &to.g, &layout, noise);
+            spread(&path.earlier, k - segment.start, &to.g, (n, nf), &mut kalman);
             let size: f64 = x.iter().chain(&slow[n..]).map(|v| v.abs()).sum();
             if !(size < BEYOND && found.log_likelihood.is_finite()) {
                 found.diverged_at = Some(k);
@@ -206,6 +209,7 @@ fn blank(
         states: zeros(n),
         predicted: zeros(ny),
         p0,
+        earlier: vec![],
         theta: zeros(n * nt),
         c_theta: zeros(ny * nt),
         seen: zeros(sources),

@@ -10,7 +10,7 @@ use super::hypothesis::{Hypothesis, names, numbers};
 use super::places::Survey;
 use super::predictor::Predictor;
 use super::ranked::MISSING;
-use super::weigh::{AS_GOOD, Weighed, plainest};
+use super::weigh::{AS_GOOD, Weighed, plainest, with_probabilities};
 
 impl Predictor {
     /// Weighs the given causes that were not weighed yet; whether another stands in the place of one.
@@ -24,7 +24,7 @@ impl Predictor {
         while let Some(at) = found.iter().position(|cause| cause.given).filter(|_| !stop()) {
             found[at].given = false;
             let Some(survey) = self.survey_without(found, now, at, stop) else { continue };
-            is_other |= self.replaced((found, now), at, &survey);
+            is_other |= self.replaced((found, now), at, survey);
         }
         is_other
     }
@@ -52,7 +52,7 @@ impl Predictor {
         &self,
         (found, now): (&mut Vec<Found>, &mut Hypothesis),
         at: usize,
-        survey: &Survey,
+        mut survey: Survey,
     ) -> bool {
         let (own, place) = (names(&found[at].parts), found[at].place);
         let is_own = |set: &&Weighed| set.place == place && names(&set.hypothesis.parts) == own;
@@ -67,23 +67,29 @@ impl Predictor {
         let value = self.merit(now, found);
         let fitted = plainest(&survey.sets).filter(may_replace).and_then(|set| {
             let mut all = found.clone();
-            all[at] = self.of(survey, set);
+            all[at] = self.of(&survey, set);
             let begun = Hypothesis { parts: joined(&all), ..set.hypothesis.clone() };
             let fitted = self.fit_all_raced(&mut all, &begun, value)?;
-            Some((self.merit(&fitted, &all) - value, all, fitted))
+            Some((self.merit(&fitted, &all) - value, all, fitted, set.log_odds))
         });
         let gain = fitted.as_ref().map_or(f64::NEG_INFINITY, |(gain, ..)| *gain);
+        let joint = fitted.as_ref().map(|(gain, .., odds)| odds - gain);
         // what has more numbers has to be more than as good
         let is_better = |all: &Vec<Found>| {
             gain > if numbers(&all[at].parts) > numbers(&found[at].parts) { AS_GOOD } else { 0.0 }
         };
-        if let Some((_, all, other)) = fitted.filter(|(_, all, _)| is_better(all)) {
+        if let Some((_, all, other, _)) = fitted.filter(|(_, all, ..)| is_better(all)) {
             (*found, *now) = (all, other);
             return true;
         }
+        // the survey holds the others as they are without it: with all fitted together its odds are these
+        if let (Some(own), Some(joint)) = (survey.sets.iter().position(|set| is_own(&set)), joint) {
+            survey.sets[own].log_odds = survey.sets[own].log_odds.max(joint);
+            with_probabilities(&mut survey.sets);
+        }
         match survey.sets.iter().find(is_own) {
             Some(set) => {
-                let Found { law, at_place, others, rivals, .. } = self.of(survey, set);
+                let Found { law, at_place, others, rivals, .. } = self.of(&survey, set);
                 found[at] = Found { law, at_place, others, rivals, ..found[at].clone() };
             }
             None => found[at].weighed_against_one(-gain),

@@ -6,8 +6,8 @@
 //! a search (hysteresis).
 
 use crate::effect::{
-    CandidateEffect, EffectBlock, EffectCall, EffectCard, EffectParameter, Mechanism, Needs, Role,
-    Search, SignRule, View,
+    CandidateEffect, EffectBlock, EffectCall, EffectCard, Mechanism, Needs, Role, Search, SignRule,
+    View,
 };
 use crate::real::{F64x8, Real};
 use crate::register;
@@ -70,7 +70,11 @@ pub(crate) fn laws(spot: Spot, view: &View, loads: &[usize]) -> Vec<Law> {
         };
         let plain = card.mechanism == Mechanism::Law && card.states == 0 && card.made_for.is_none();
         if fits && allowed && plain && !card.parameters.is_empty() {
-            found.extend(points(own.name, effect.as_ref(), &card, spot, view));
+            let points = points(own.name, effect.as_ref(), &card, spot, view);
+            match spot {
+                Spot::Time => found.extend(points.first().iter().flat_map(|law| law.moments(view))),
+                _ => found.extend(points),
+            }
         }
     }
     found
@@ -163,20 +167,6 @@ impl Law {
     pub fn coefficients(&self) -> Vec<usize> {
         let linear = |&&i: &&usize| self.card.parameters[i].role == Role::Coefficient;
         self.free.iter().filter(linear).copied().collect()
-    }
-
-    /// Numbers that it is paid for: a moment is chosen among all samples, which takes twice as much as a number
-    /// (Zhang and Siegmund, Biometrics 63, 2007).
-    pub fn numbers(&self) -> usize {
-        self.free.len() + usize::from(self.card.properties.begins.is_some())
-    }
-
-    /// How finely a moment is told by a law that begins at it: half of what that takes.
-    fn resolution(&self, i: usize) -> Option<f64> {
-        let parameters = &self.card.parameters;
-        let begins = self.card.properties.begins.filter(|own| parameters[i].name == own.from)?;
-        let is_rise = |own: &EffectParameter| own.role == Role::Held && own.name != begins.from;
-        parameters.iter().position(is_rise).map(|rise| 0.5 * self.values[rise])
     }
 
     /// One column per coefficient; a law without one is a column itself. `load` is the course of the second

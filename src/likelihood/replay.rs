@@ -7,6 +7,7 @@
 //! by State Space Methods", 2012, ch. 4 and 7.
 
 use super::backward::Back;
+use super::earlier::{known_after, spread};
 use super::kalman::Kalman;
 use super::noise::{Component, Layout, Noise};
 use super::path::Path;
@@ -125,7 +126,8 @@ lacuna_core::per_isa! {
                 let since = k - segment.start;
                 let whole = path.e[k * ny..][..ny].iter().all(|e| e.is_finite());
                 let same = whole && path.is_as_before(k);
-                stationary = same && (stationary || (since % ASKED == 0
+                let is_known = since > known_after(&path.earlier);
+                stationary = same && is_known && (stationary || (since % ASKED == 0
                     && since > 0
                     && !pass.kept
                     && is_settled(&pass.s, &pass.k, (k, ny, na), &mut largest)));
@@ -165,6 +167,7 @@ lacuna_core::per_isa! {
                     std::mem::swap(x, &mut pass.next);
                     if !stationary {
                         kalman.predict(a, g, &pass.layout, noise);
+                        spread(&path.earlier, since, g, (n, path.forces), kalman);
                     }
                 }
             }

@@ -74,12 +74,7 @@ impl Predictor {
                 Weighed { hypothesis, place, choice, among, log_odds, probability: 0.0 }
             })
             .collect();
-        found.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
-        let odds: Vec<f64> = found.iter().map(|set| set.log_odds).chain([0.0]).collect();
-        let all = log_sum(&odds);
-        for set in &mut found {
-            set.probability = (set.log_odds - all).exp();
-        }
+        with_probabilities(&mut found);
         found
     }
 
@@ -98,6 +93,16 @@ impl Predictor {
             probability,
             log_odds,
         }
+    }
+}
+
+/// Orders sets by their odds, and gives each its probability.
+pub(super) fn with_probabilities(sets: &mut [Weighed]) {
+    sets.sort_by(|a, b| b.log_odds.total_cmp(&a.log_odds));
+    let odds: Vec<f64> = sets.iter().map(|set| set.log_odds).chain([0.0]).collect();
+    let all = log_sum(&odds);
+    for set in sets {
+        set.probability = (set.log_odds - all).exp();
     }
 }
 

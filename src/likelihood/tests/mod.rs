@@ -4,6 +4,7 @@
 mod ahead;
 mod all_parameters;
 mod direct;
+mod earlier;
 mod filter;
 mod held_out;
 mod intensities;
