@@ -14,11 +14,15 @@ use super::path::Path;
 use super::replay::Pass;
 use super::screen::Spotted;
 use super::tangent::{Column, Site, gram};
+use crate::effect::Size;
 
 /// Sets of each size that are fitted.
 const SINGLES: usize = 4;
 const PAIRS: usize = 5;
 const TRIPLES: usize = 3;
+
+/// How far the orders of two waves are apart, at least.
+const ORDERS: f64 = 0.9;
 
 /// One law at one point of its grid, and its columns.
 struct Entry<'a> {
@@ -79,7 +83,7 @@ pub(crate) fn sets(
     };
     let n = entries.len();
     let distinct = |set: &[usize]| {
-        (1..set.len()).all(|i| (0..i).all(|j| entries[set[i]].law.name != entries[set[j]].law.name))
+        (1..set.len()).all(|i| (0..i).all(|j| are_two(entries[set[i]].law, entries[set[j]].law)))
     };
     found.extend(leading((0..n).map(|e| vec![e]).collect(), SINGLES));
     let pairs = (0..n).flat_map(|a| (0..a).map(move |b| vec![b, a])).filter(|set| distinct(set));
@@ -115,6 +119,20 @@ pub(crate) fn sets(
                 .collect()
         })
         .collect()
+}
+
+/// Whether two laws of a place may act together: they have other names, or are waves of other orders, as a periodic
+/// law has several of.
+fn are_two(a: &Law, b: &Law) -> bool {
+    let order = |law: &Law| match law.card.properties.size {
+        Size::Wave { order, .. } => {
+            let at = law.card.parameters.iter().position(|own| own.name == order)?;
+            Some(law.values[at])
+        }
+        _ => None,
+    };
+    let differ = || order(a).zip(order(b)).is_some_and(|(a, b)| (a - b).abs() > ORDERS);
+    a.name != b.name || differ()
 }
 
 /// Gain of log L of a set of columns, and their amplitudes.

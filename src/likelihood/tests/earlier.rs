@@ -1,4 +1,4 @@
-//! A delay in a record that begins in the middle of a motion.
+//! A delay or a lag in a record that begins in the middle of a motion.
 
 use lacuna_core::data::{Random, Record};
 use lacuna_core::system::{Drive, Lane};
@@ -10,10 +10,8 @@ const STEP: f64 = 0.05;
 const NOISE: f64 = 0.002;
 
 /// What came before is no noise inside the plant.
-#[test]
-fn what_a_delay_passes_on_from_before_the_record_disturbs_nothing() {
-    let late = "into = \"force\"\nof = \"force\"\neffect.delay = { delay = 0.6 }";
-    let system = with(OSCILLATOR, late);
+fn disturbs_nothing(path: &str) {
+    let system = with(OSCILLATOR, &format!("into = \"force\"\nof = \"force\"\neffect.{path}"));
     let force = excitation(2000, STEP, 3.0, 5);
     let drive = Drive { inputs: vec![force.clone()], segments: vec![0..2000], clocks: vec![0.0] };
     let plan = system.plan(STEP).unwrap();
@@ -39,4 +37,14 @@ fn what_a_delay_passes_on_from_before_the_record_disturbs_nothing() {
         let early: f64 = chosen.run.densities[..24].iter().sum::<f64>() / 24.0;
         assert!(early > -1.0, "{from}: {early}");
     }
+}
+
+#[test]
+fn what_a_delay_passes_on_from_before_the_record_disturbs_nothing() {
+    disturbs_nothing("delay = { delay = 0.6 }");
+}
+
+#[test]
+fn nor_does_what_a_lag_passes_on() {
+    disturbs_nothing("lag = { time_constant = 0.5 }");
 }
