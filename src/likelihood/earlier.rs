@@ -1,30 +1,39 @@
-//! What a delay or a lag of an input passes on from before the record.
+//! What a delay of an input, or a lag, passes on from before the record.
 //!
-//! Before the first sample the input is taken to be what it is there, from which it may have been as far as the recorded
-//! values are, and stayed there. What passes a delay d is not known for the first d / T samples, and what a lag tau passes
-//! on fades as exp(-k T / tau):
+//! Before the first sample a signal is taken to be what it is there, from which it may have been as far as it moves within
+//! the delay d, or as far as the lag tau is behind it, anywhere in the records; v is the mean square of that. For
 //!
 //! ```text
-//! x[k+1] = F(x, u + w[k]),   w[k] ~ N(0, m q^k mean( (u - u[0])^2 ))
-//! m = d / T, q = 1 for k < m         m = tau / T, q = exp(-2 T / tau)
+//! a delay of an input    x[k+1] = F(x, u + w), w ~ N(0, m v), k < m = d / T      m such w are as far off as one that stays
+//! a lag of an input      the same with N(0, m v q^k), m = tau / T, q = exp(-2 T / tau)
+//! a lag of an output     y[0] = h + w, w ~ N(0, v), and what the lag remembers after it is off by N(0, v)
 //! ```
 //!
-//! m independent w being together as far off as one that stays for m samples. Source: Durbin and Koopman, "Time Series
-//! Analysis by State Space Methods", 2nd ed., 2012, ch. 5 (states that are not known at the start).
+//! Source: Durbin and Koopman, "Time Series Analysis by State Space Methods", 2nd ed., 2012, ch. 5 (states that are not
+//! known at the start).
 
 use super::kalman::Kalman;
 use super::parametrised::Model;
 use crate::effect::Mechanism;
-use crate::system::{Drive, Slot, Way};
+use crate::system::{Drive, Way};
 
-/// Share of a deviation that has faded.
+/// Share of a deviation at which it has faded.
 const FADED: f64 = 1e-2;
 
-/// An input that is not known in the first samples of a segment.
-#[derive(Debug, Clone, PartialEq)]
+/// What is not known in the first samples of a segment.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Earlier {
-    /// Its entry among the forces.
-    force: usize,
+    /// By entry among the forces.
+    inputs: Vec<Unknown>,
+    /// By output.
+    outputs: Vec<Unknown>,
+    /// By state, after the first sample.
+    states: Vec<Unknown>,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+struct Unknown {
+    entry: usize,
     /// Samples in which it is not known.
     samples: usize,
     /// Variance of what it may be off by in the first of them, and how much of that is left in the next.
@@ -32,52 +41,120 @@ pub(crate) struct Earlier {
     left: f64,
 }
 
-/// The inputs of a model that pass a delay or a lag.
-pub(super) fn earlier(model: &Model, drive: &Drive) -> Vec<Earlier> {
-    let (plan, values) = (&model.plan, model.plan.effect_values());
-    let one = |slot: &Slot| {
-        let Way::InputPath(input) = slot.way else { return None };
-        let time = values.get(slot.first_parameter)? / plan.sampling_time;
-        let (samples, left) = match slot.card.mechanism {
-            Mechanism::Delay => (time.ceil(), 1.0),
-            Mechanism::Lag => ((-FADED.ln() * time).ceil(), (-2.0 / time).exp()),
-            _ => return None,
-        };
-        let u = &drive.inputs[input];
-        let off = drive.segments.iter().flat_map(|own| {
-            let first = u[own.start];
-            u[own.clone()].iter().map(move |u| (u - first) * (u - first))
-        });
-        let (sum, count) = off.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
-        let variance = time.ceil() * sum / f64::max(count, 1.0);
-        let is_there = time > 0.0 && variance.is_finite();
-        let (force, samples) = (plan.sizes.w + input, samples as usize);
-        is_there.then_some(Earlier { force, samples, variance, left })
-    };
-    plan.slots.iter().filter_map(one).collect()
-}
-
-/// Adds what is not known at a sample, so many after the start of its segment, to a predicted covariance; `g` is states
-/// by forces.
-#[inline(always)]
-pub(super) fn spread(
-    all: &[Earlier],
-    since: usize,
-    g: &[f64],
-    (n, nf): (usize, usize),
-    to: &mut Kalman,
-) {
-    for own in all.iter().filter(|own| since < own.samples) {
-        let variance = own.variance * own.left.powi(since as i32);
-        for i in 0..n {
-            let along = variance * g[i * nf + own.force];
-            let row = to.p.plain_mut(i);
-            (0..n).for_each(|j| row[j] += along * g[j * nf + own.force]);
-        }
+impl Unknown {
+    fn at(&self, since: usize) -> f64 {
+        if since < self.samples { self.variance * self.left.powi(since as i32) } else { 0.0 }
     }
 }
 
-/// Samples of a segment after which everything is known.
-pub(super) fn known_after(all: &[Earlier]) -> usize {
-    all.iter().map(|own| own.samples).max().unwrap_or(0)
+impl Earlier {
+    /// What the delays and lags of a model pass on; `measured` holds all outputs sample by sample.
+    pub fn of(model: &Model, drive: &Drive, measured: &[f64]) -> Self {
+        let (plan, values) = (&model.plan, model.plan.effect_values());
+        let mut found = Self::default();
+        // states of the effects, then what the paths of outputs remember
+        let mut next = plan.sizes.x + plan.states;
+        for slot in &plan.slots {
+            let time = values.get(slot.first_parameter).map_or(0.0, |v| v / plan.sampling_time);
+            let of = slot.card.mechanism;
+            let own = next;
+            if let Way::OutputPath(_) = slot.way {
+                next += match of {
+                    Mechanism::Lag => 2,
+                    Mechanism::Play => 1,
+                    _ => 0,
+                };
+            }
+            if !(time > 0.0 && time.is_finite()) {
+                continue;
+            }
+            let entry = |entry, samples: f64, variance, left| {
+                let samples = samples.ceil() as usize;
+                Unknown { entry, samples, variance, left }
+            };
+            match (of, &slot.way) {
+                (Mechanism::Delay, Way::InputPath(i)) => {
+                    let v = moved(&drive.inputs[*i], drive, time) * time.ceil();
+                    found.inputs.push(entry(plan.sizes.w + i, time, v, 1.0));
+                }
+                (Mechanism::Lag, Way::InputPath(i)) => {
+                    let v = behind(&drive.inputs[*i], drive, time) * time.ceil();
+                    let (samples, left) = (-FADED.ln() * time, (-2.0 / time).exp());
+                    found.inputs.push(entry(plan.sizes.w + i, samples, v, left));
+                }
+                (Mechanism::Lag, Way::OutputPath(o)) => {
+                    let y = column(measured, *o, plan.sizes.y);
+                    let v = behind(&y, drive, time);
+                    found.outputs.push(entry(*o, 1.0, v, 1.0));
+                    found.states.push(entry(own, 1.0, v, 1.0));
+                }
+                _ => {}
+            }
+        }
+        found
+    }
+
+    /// Variance of a reading beside that of its noise.
+    #[inline(always)]
+    pub fn reading(&self, output: usize, since: usize) -> f64 {
+        self.outputs.iter().filter(|own| own.entry == output).map(|own| own.at(since)).sum()
+    }
+
+    /// Adds what is not known at a sample, so many after the start of its segment, to the covariance that is predicted
+    /// from it; `g` is states by forces.
+    #[inline(always)]
+    pub fn spread(&self, since: usize, g: &[f64], (n, nf): (usize, usize), to: &mut Kalman) {
+        for own in &self.inputs {
+            let variance = own.at(since);
+            for i in (0..n).filter(|_| variance > 0.0) {
+                let along = variance * g[i * nf + own.entry];
+                let row = to.p.plain_mut(i);
+                (0..n).for_each(|j| row[j] += along * g[j * nf + own.entry]);
+            }
+        }
+        for own in self.states.iter().filter(|own| own.entry < n) {
+            to.p.plain_mut(own.entry)[own.entry] += own.at(since);
+        }
+    }
+
+    /// Samples of a segment after which everything is known.
+    pub fn known_after(&self) -> usize {
+        let all = self.inputs.iter().chain(&self.outputs).chain(&self.states);
+        all.map(|own| own.samples).max().unwrap_or(0)
+    }
+}
+
+fn column(table: &[f64], of: usize, columns: usize) -> Vec<f64> {
+    table.iter().skip(of).step_by(columns.max(1)).copied().collect()
+}
+
+/// Mean square of how far a signal moves within so many samples.
+fn moved(signal: &[f64], drive: &Drive, time: f64) -> f64 {
+    let lag = time.ceil() as usize;
+    let all = drive.segments.iter().flat_map(|own| {
+        let own = &signal[own.clone()];
+        own.iter().skip(lag).zip(own).map(|(now, then)| now - then)
+    });
+    mean_square(all)
+}
+
+/// Mean square of how far a lag of so many samples is behind a signal.
+fn behind(signal: &[f64], drive: &Drive, time: f64) -> f64 {
+    let gone = 1.0 - (-1.0 / time).exp();
+    let all = drive.segments.iter().flat_map(|own| {
+        let mut value = f64::NAN;
+        signal[own.clone()].iter().map(move |now| {
+            if now.is_finite() {
+                value = if value.is_finite() { value + gone * (now - value) } else { *now };
+            }
+            now - value
+        })
+    });
+    mean_square(all)
+}
+
+fn mean_square(all: impl Iterator<Item = f64>) -> f64 {
+    let add = |(sum, count): (f64, f64), off: f64| (sum + off * off, count + 1.0);
+    let (sum, count) = all.filter(|off| off.is_finite()).fold((0.0, 0.0), add);
+    sum / f64::max(count, 1.0)
 }

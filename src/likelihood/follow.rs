@@ -5,7 +5,7 @@
 //! innovation beyond it moves nothing and is scored by the tail of Student's distribution.
 //! Sources: Jazwinski, "Stochastic Processes and Filtering Theory", 1970, ch. 8; Ljung, section 3.2.
 
-use super::earlier::{earlier, spread};
+use super::earlier::Earlier;
 use super::kalman::Kalman;
 use super::noise::{Layout, Noise};
 use super::parametrised::Model;
@@ -74,7 +74,7 @@ pub(crate) fn follow(
     let nt = if wanted.theta { model.theta.len() } else { 0 };
     let sources = if wanted.seen { model.plan.sources.entries.len() } else { 0 };
     let mut path = blank((n, nf, ny), (nt, sources), len, drive, start);
-    path.earlier = earlier(model, drive);
+    path.earlier = Earlier::of(model, drive, measured);
     path.d.resize(if direct { len * ny * nf } else { 0 }, 0.0);
     path.unread.resize(if wanted.seen { len * ny } else { 0 }, 0.0);
     let entries: Vec<Option<usize>> =
@@ -124,9 +124,10 @@ pub(crate) fn follow(
                 layout.row(path.rows(k, o), o, kalman.c_mut());
                 let expected: f64 = kalman.c().iter().zip(&slow).map(|(c, x)| c * x).sum();
                 let own = e - expected;
+                let variance = noise.measurement[o] + path.earlier.reading(o, k - segment.start);
                 let gate = wanted.gate.filter(|_| row[o] < IN_A_ROW);
                 if let Some(gate) = gate {
-                    let s = kalman.gain(noise.measurement[o]);
+                    let s = kalman.gain(variance);
                     let over = own.abs() / s.sqrt() / gate;
                     if over > 1.0 {
                         let normal = 0.5 * ((std::f64::consts::TAU * s).ln() + gate * gate);
@@ -139,7 +140,7 @@ pub(crate) fn follow(
                 }
                 row[o] = 0;
                 path.e[at] = e;
-                let s = kalman.update(noise.measurement[o]);
+                let s = kalman.update(variance);
                 slow.iter_mut().zip(kalman.k()).for_each(|(x, k)| *x += k * own);
                 found.densities[at] = -0.5 * ((std::f64::consts::TAU * s).ln() + own * own / s);
                 found.log_likelihood += found.densities[at];
@@ -166,7 +167,7 @@ pub(crate) fn follow(
                 slow[i] *= part.pole;
             }
             kalman.predict(&to.a, &to.g, &layout, noise);
-            spread(&path.earlier, k - segment.start, &to.g, (n, nf), &mut kalman);
+            path.earlier.spread(k - segment.start, &to.g, (n, nf), &mut kalman);
             let size: f64 = x.iter().chain(&slow[n..]).map(|v| v.abs()).sum();
             if !(size < BEYOND && found.log_likelihood.is_finite()) {
                 found.diverged_at = Some(k);
@@ -209,7 +210,7 @@ fn blank(
         states: zeros(n),
         predicted: zeros(ny),
         p0,
-        earlier: vec![],
+        earlier: Earlier::default(),
         theta: zeros(n * nt),
         c_theta: zeros(ny * nt),
         seen: zeros(sources),

@@ -40,8 +40,8 @@ pub(crate) struct Path {
     pub unread: Vec<f64>,
     /// Variances of the states at the start of a segment.
     pub p0: Vec<f64>,
-    /// Inputs that are not known in the first samples of a segment.
-    pub earlier: Vec<Earlier>,
+    /// What is not known in the first samples of a segment.
+    pub earlier: Earlier,
     /// Next states and outputs along parameters, where asked for.
     pub theta: Vec<f64>,
     pub c_theta: Vec<f64>,

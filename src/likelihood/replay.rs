@@ -7,7 +7,6 @@
 //! by State Space Methods", 2012, ch. 4 and 7.
 
 use super::backward::Back;
-use super::earlier::{known_after, spread};
 use super::kalman::Kalman;
 use super::noise::{Component, Layout, Noise};
 use super::path::Path;
@@ -118,6 +117,7 @@ lacuna_core::per_isa! {
         let (kalman, x) = (&mut pass.kalman, &mut pass.x);
         let mut sum = 0.0;
         let mut largest = vec![0.0; ny * na];
+        let known = path.earlier.known_after();
         for segment in &path.segments {
             kalman.start(&path.p0, &pass.layout, noise);
             x.fill(0.0);
@@ -126,7 +126,7 @@ lacuna_core::per_isa! {
                 let since = k - segment.start;
                 let whole = path.e[k * ny..][..ny].iter().all(|e| e.is_finite());
                 let same = whole && path.is_as_before(k);
-                let is_known = since > known_after(&path.earlier);
+                let is_known = since > known;
                 stationary = same && is_known && (stationary || (since % ASKED == 0
                     && since > 0
                     && !pass.kept
@@ -151,7 +151,7 @@ lacuna_core::per_isa! {
                         pass.k.copy_within((at - ny) * na..(at - ny + 1) * na, at * na);
                         pass.s[at] = pass.s[at - ny];
                     } else {
-                        pass.s[at] = kalman.update(noise.measurement[o]);
+                        pass.s[at] = kalman.update(noise.measurement[o] + path.earlier.reading(o, since));
                         pass.k[at * na..][..na].copy_from_slice(kalman.k());
                     }
                     let s = pass.s[at];
@@ -167,7 +167,7 @@ lacuna_core::per_isa! {
                     std::mem::swap(x, &mut pass.next);
                     if !stationary {
                         kalman.predict(a, g, &pass.layout, noise);
-                        spread(&path.earlier, since, g, (n, path.forces), kalman);
+                        path.earlier.spread(since, g, (n, path.forces), kalman);
                     }
                 }
             }
