@@ -22,19 +22,30 @@ fn transform(x: &[f64], size: usize, window: impl Fn(usize) -> f64) -> Vec<f64> 
     }
 }
 
-/// Angular frequencies (rad/s) of the strongest lines of a signal, strongest first, well
-/// apart from each other.
+/// Lines on either side of one that its background is taken from.
+const BESIDE: usize = 25;
+/// Points per line at which a spectrum is evaluated.
+const FINER: usize = 4;
+
+/// Angular frequencies (rad/s) of the lines of a signal that stand out most, the first first, well apart from each
+/// other: those with the largest |X(w)|^2 / S(w), the likelihood ratio of a wave in noise of spectrum S (Quinn and Hannan,
+/// "The Estimation and Tracking of Frequency", 2001, ch. 3), S being the median of the lines beside.
 pub fn strongest(x: &[f64], dt: f64, count: usize) -> Vec<f64> {
     let n = x.len();
     if n < 16 {
         return vec![];
     }
     // finer than the lines of the record, under a Hann window
-    let size = 4 * n;
+    let size = FINER * n;
     let turn = 2.0 * std::f64::consts::PI / (n - 1) as f64;
     let mut power = transform(x, size, |k| 0.5 - 0.5 * (turn * k as f64).cos());
     let line = 2.0 * std::f64::consts::PI / (size as f64 * dt);
-    for p in power.iter_mut().take(8) {
+    let least = 1e-12 * power.iter().copied().fold(0.0, f64::max);
+    let background = background(&power);
+    for (p, own) in power.iter_mut().zip(background) {
+        *p /= (own + least).max(f64::MIN_POSITIVE);
+    }
+    for p in power.iter_mut().take(2 * FINER) {
         *p = 0.0;
     }
     let mut found = vec![];
@@ -49,6 +60,17 @@ pub fn strongest(x: &[f64], dt: f64, count: usize) -> Vec<f64> {
         power[from..to].fill(0.0);
     }
     found
+}
+
+/// The median of the points of a spectrum about each.
+fn background(power: &[f64]) -> Vec<f64> {
+    let reach = BESIDE * FINER;
+    let one = |k: usize| {
+        let mut near = power[k.saturating_sub(reach)..(k + reach + 1).min(power.len())].to_vec();
+        let middle = near.len() / 2;
+        *near.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    (0..power.len()).map(one).collect()
 }
 
 /// Powers of half-overlapping pieces of a signal under a Hann window (Welch, IEEE Trans. Audio
@@ -75,5 +97,19 @@ mod tests {
         let x: Vec<f64> = (0..1000).map(|k| (13.7 * k as f64 * dt).sin()).collect();
         let found = strongest(&x, dt, 1);
         assert!((found[0] - 13.7).abs() < 0.2, "{found:?}");
+    }
+
+    /// A hum of which the amplitude is a tenth of what wanders slowly.
+    #[test]
+    fn a_hum_stands_out_of_coloured_noise() {
+        let (dt, mut random, mut slow) = (0.02, crate::data::Random::new(5), 0.0);
+        let x: Vec<f64> = (0..4000)
+            .map(|k| {
+                slow += -0.01 * slow + 0.1 * random.normal();
+                slow + 0.07 * (14.89 * f64::from(k) * dt).sin()
+            })
+            .collect();
+        let found = strongest(&x, dt, 1);
+        assert!((found[0] - 14.89).abs() < 0.05, "{found:?}");
     }
 }
