@@ -32,7 +32,6 @@ fn diagnosed(record: Record) -> Finding {
 }
 
 fn asks_for_the_brake(finding: &Finding, from: f64) {
-    eprintln!("{}\n{:?}", lacuna::report::sentences::summary(finding), finding.causes);
     let laws: Vec<&Cause> = finding.causes.iter().filter(|c| c.effect != "parameter").collect();
     let names: Vec<String> = finding.causes.iter().map(Cause::name).collect();
     assert_eq!(laws.len(), 1, "{names:?}");
@@ -54,7 +53,7 @@ fn asks_for_the_brake(finding: &Finding, from: f64) {
 }
 
 #[test]
-fn a_load_that_is_put_on_is_named_beside_wrong_parameters() {
+fn a_load_that_is_put_on_is_named_where_parameters_are_wrong() {
     let sensor = Sizes { measurement: vec![0.002], ..Sizes::default() };
     for (seed, from) in [(3, 25.0), (4, 41.7)] {
         asks_for_the_brake(&diagnosed(record(from, &sensor, seed)), from);

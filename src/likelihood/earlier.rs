@@ -12,8 +12,8 @@
 //! Source: Durbin and Koopman, "Time Series Analysis by State Space Methods", 2nd ed., 2012, ch. 5 (states that are not
 //! known at the start).
 
-use super::kalman::Kalman;
 use super::parametrised::Model;
+use super::rows::Rows;
 use crate::effect::Mechanism;
 use crate::system::{Drive, Way};
 
@@ -103,17 +103,17 @@ impl Earlier {
     /// Adds what is not known at a sample, so many after the start of its segment, to the covariance that is predicted
     /// from it; `g` is states by forces.
     #[inline(always)]
-    pub fn spread(&self, since: usize, g: &[f64], (n, nf): (usize, usize), to: &mut Kalman) {
+    pub fn spread(&self, since: usize, g: &[f64], (n, nf): (usize, usize), to: &mut Rows) {
         for own in &self.inputs {
             let variance = own.at(since);
             for i in (0..n).filter(|_| variance > 0.0) {
                 let along = variance * g[i * nf + own.entry];
-                let row = to.p.plain_mut(i);
+                let row = to.plain_mut(i);
                 (0..n).for_each(|j| row[j] += along * g[j * nf + own.entry]);
             }
         }
         for own in self.states.iter().filter(|own| own.entry < n) {
-            to.p.plain_mut(own.entry)[own.entry] += own.at(since);
+            to.plain_mut(own.entry)[own.entry] += own.at(since);
         }
     }
 

@@ -167,7 +167,7 @@ pub(crate) fn follow(
                 slow[i] *= part.pole;
             }
             kalman.predict(&to.a, &to.g, &layout, noise);
-            path.earlier.spread(k - segment.start, &to.g, (n, nf), &mut kalman);
+            path.earlier.spread(k - segment.start, &to.g, (n, nf), &mut kalman.p);
             let size: f64 = x.iter().chain(&slow[n..]).map(|v| v.abs()).sum();
             if !(size < BEYOND && found.log_likelihood.is_finite()) {
                 found.diverged_at = Some(k);

@@ -108,11 +108,11 @@ impl Predictor {
         }
         all.push((own.as_set(&own, now, 0.0), found.clone(), now.clone()));
         all.sort_by(|a, b| b.0.log_odds.total_cmp(&a.0.log_odds));
-        let is_beside = |causes: &[Found]| causes.iter().any(Found::is_all_parameters);
-        let beside = all.iter().filter(|(_, causes, _)| is_beside(causes));
-        let beside: Vec<f64> = beside.map(|(set, ..)| set.log_odds).collect();
+        let has_group = |causes: &[Found]| causes.iter().any(Found::is_all_parameters);
+        let grouped = all.iter().filter(|(_, causes, _)| has_group(causes));
+        let grouped: Vec<f64> = grouped.map(|(set, ..)| set.log_odds).collect();
         let every: Vec<f64> = all.iter().map(|(set, ..)| set.log_odds).collect();
-        let of_parameters = (log_sum(&beside) - log_sum(&every)).exp();
+        let of_parameters = (log_sum(&grouped) - log_sum(&every)).exp();
         // each law beside the parameters that it is likelier with
         let mut known = BTreeSet::new();
         all.retain(|(set, ..)| known.insert(set.hypothesis.names()));
@@ -127,7 +127,7 @@ impl Predictor {
         let Some((_, causes, fitted)) = all.into_iter().find(|(set, ..)| is_best(set)) else {
             return false;
         };
-        let is_new = !is_beside(found) && is_beside(&causes);
+        let is_new = !has_group(found) && has_group(&causes);
         (*found, *now) = (causes, fitted);
         for cause in found.iter_mut().filter(|cause| is_new && cause.is_all_parameters()) {
             (cause.law, cause.at_place) = (of_parameters, of_parameters);

@@ -167,7 +167,7 @@ lacuna_core::per_isa! {
                     std::mem::swap(x, &mut pass.next);
                     if !stationary {
                         kalman.predict(a, g, &pass.layout, noise);
-                        path.earlier.spread(since, g, (n, path.forces), kalman);
+                        path.earlier.spread(since, g, (n, path.forces), &mut kalman.p);
                     }
                 }
             }

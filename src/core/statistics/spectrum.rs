@@ -23,7 +23,7 @@ fn transform(x: &[f64], size: usize, window: impl Fn(usize) -> f64) -> Vec<f64> 
 }
 
 /// Lines on either side of one that its background is taken from.
-const BESIDE: usize = 25;
+const NEIGHBOURS: usize = 25;
 /// Points per line at which a spectrum is evaluated.
 const FINER: usize = 4;
 
@@ -64,7 +64,7 @@ pub fn strongest(x: &[f64], dt: f64, count: usize) -> Vec<f64> {
 
 /// The median of the points of a spectrum about each.
 fn background(power: &[f64]) -> Vec<f64> {
-    let reach = BESIDE * FINER;
+    let reach = NEIGHBOURS * FINER;
     let one = |k: usize| {
         let mut near = power[k.saturating_sub(reach)..(k + reach + 1).min(power.len())].to_vec();
         let middle = near.len() / 2;
