@@ -25,5 +25,5 @@ pub use levinson::{Predictor, levinson};
 pub use lines::lines;
 pub use sandwich::covariance;
 pub use score_test::{Dependence, Regression};
-pub use spectrum::{pieces, power, strongest};
+pub use spectrum::{outstanding, pieces, power, strongest};
 pub use whiteness::whiteness;

@@ -27,24 +27,37 @@ const NEIGHBOURS: usize = 25;
 /// Points per line at which a spectrum is evaluated.
 const FINER: usize = 4;
 
-/// Angular frequencies (rad/s) of the lines of a signal that stand out most, the first first, well apart from each
-/// other: those with the largest |X(w)|^2 / S(w), the likelihood ratio of a wave in noise of spectrum S (Quinn and Hannan,
-/// "The Estimation and Tracking of Frequency", 2001, ch. 3), S being the median of the lines beside.
+/// Angular frequencies (rad/s) of the strongest lines of a signal, strongest first, well
+/// apart from each other.
 pub fn strongest(x: &[f64], dt: f64, count: usize) -> Vec<f64> {
-    let n = x.len();
-    if n < 16 {
-        return vec![];
-    }
-    // finer than the lines of the record, under a Hann window
-    let size = FINER * n;
-    let turn = 2.0 * std::f64::consts::PI / (n - 1) as f64;
-    let mut power = transform(x, size, |k| 0.5 - 0.5 * (turn * k as f64).cos());
-    let line = 2.0 * std::f64::consts::PI / (size as f64 * dt);
+    peaks(fine(x), x.len(), dt, count)
+}
+
+/// Those of the lines that stand out most: with the largest |X(w)|^2 / S(w), the likelihood ratio of a wave in noise of
+/// spectrum S (Quinn and Hannan, "The Estimation and Tracking of Frequency", 2001, ch. 3), S being the median of
+/// the lines about it.
+pub fn outstanding(x: &[f64], dt: f64, count: usize) -> Vec<f64> {
+    let mut power = fine(x);
     let least = 1e-12 * power.iter().copied().fold(0.0, f64::max);
     let background = background(&power);
     for (p, own) in power.iter_mut().zip(background) {
         *p /= (own + least).max(f64::MIN_POSITIVE);
     }
+    peaks(power, x.len(), dt, count)
+}
+
+/// A spectrum finer than the lines of the record, under a Hann window.
+fn fine(x: &[f64]) -> Vec<f64> {
+    let turn = 2.0 * std::f64::consts::PI / (x.len().max(2) - 1) as f64;
+    transform(x, FINER * x.len(), |k| 0.5 - 0.5 * (turn * k as f64).cos())
+}
+
+/// The largest values of a spectrum of `n` samples, well apart from each other.
+fn peaks(mut power: Vec<f64>, n: usize, dt: f64, count: usize) -> Vec<f64> {
+    if n < 16 {
+        return vec![];
+    }
+    let line = 2.0 * std::f64::consts::PI / ((FINER * n) as f64 * dt);
     for p in power.iter_mut().take(2 * FINER) {
         *p = 0.0;
     }
@@ -109,7 +122,9 @@ mod tests {
                 slow + 0.07 * (14.89 * f64::from(k) * dt).sin()
             })
             .collect();
-        let found = strongest(&x, dt, 1);
+        let found = outstanding(&x, dt, 1);
         assert!((found[0] - 14.89).abs() < 0.05, "{found:?}");
+        let largest = strongest(&x, dt, 1);
+        assert!(largest[0] < 1.0, "{largest:?}");
     }
 }

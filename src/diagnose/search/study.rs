@@ -17,7 +17,7 @@ use crate::fit::refit::{Fitted, Stop};
 use crate::fit::segment_restart::restarted;
 use crate::prepare::input_dependence::dependence;
 use crate::prepare::operating_range::Nominal;
-use crate::statistics::strongest;
+use crate::statistics::{outstanding, strongest};
 use crate::watch::Watch;
 
 /// Lines of the residual that hums are tried at.
@@ -276,7 +276,8 @@ impl<'a, 'b> Study<'a, 'b> {
         let n = (fit.residual.len() / self.problem.y.len().max(1)).max(1);
         let step = self.problem.base.sampling_time;
         let mut lines: Vec<f64> = vec![];
-        for line in fit.residual.chunks(n).flat_map(|r| strongest(r, step, LINES)) {
+        let of = |r| strongest(r, step, LINES).into_iter().chain(outstanding(r, step, 1));
+        for line in fit.residual.chunks(n).flat_map(of) {
             if !lines.contains(&line) {
                 lines.push(line);
             }
