@@ -46,6 +46,6 @@ mod tests {
         let side =
             |value| Value { name: String::new(), value, std_error: Some(2.0), unit: "N".into() };
         let said = by_direction("rod", Some("speed"), [&side(1050.0), &side(520.0)]);
-        assert!(said.contains("1050.0 +- 3.9 N where speed is positive, 520.0 +- 3.9 N"), "{said}");
+        assert!(said.contains("1050.0 +- 4.0 N where speed is positive, 520.0 +- 4.0 N"), "{said}");
     }
 }
