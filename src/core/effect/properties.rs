@@ -63,7 +63,8 @@ pub struct Properties {
     pub size: Size,
 }
 
-/// What begins within a record, and when.
+/// What begins within a record, and when; written by [`EffectCard::begins`](super::EffectCard::begins).
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Begins {
     /// The parameter that is the moment.
