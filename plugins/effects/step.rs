@@ -5,7 +5,7 @@ use lacuna::prelude::*;
 /// w = value min(max((t - from) / rise + 1/2, 0), 1), t being the record's clock.
 ///
 /// A step disturbance: a load that is put on, a brake that is applied, an offset of an amplifier since it was
-/// opened (Willsky and Jones, IEEE Trans. Automatic Control 21, 1976).
+/// opened, a sensor that slips (Willsky and Jones, IEEE Trans. Automatic Control 21, 1976).
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Step {
@@ -35,7 +35,7 @@ impl Effect for Step {
             EffectParameter::held("rise", self.rise, UnitRule::Coordinate),
         ])
         .needs(Needs::Time)
-        .places(Places { channel: true, ..Places::default() })
+        .places(Places { channel: true, output: true, ..Places::default() })
         .begins("from", "bias")
         .rank(2)
     }

@@ -69,8 +69,8 @@ impl Predictor {
     ) -> Option<Fitted> {
         let here = self.holding(now).ok()?;
         let time = Some(self.model.plan.sources.named - 1);
-        let one = |c: usize| {
-            let place = (Site::Force(c), time);
+        let one = |site: Site| {
+            let place = (site, time);
             if stop() || found.iter().any(|cause| cause.place == place) {
                 return None;
             }
@@ -83,7 +83,8 @@ impl Predictor {
             let fitted = self.fit_all(&mut all, &start.theta, &start.noise)?;
             Some((all, fitted))
         };
-        let all = (0..self.model.plan.sizes.w + self.model.plan.sizes.u).filter_map(one);
+        let forces = (0..self.model.plan.sizes.w + self.model.plan.sizes.u).map(Site::Force);
+        let all = forces.chain((0..self.spread.len()).map(Site::Output)).filter_map(one);
         all.max_by(|a, b| self.merit(&a.1, &a.0).total_cmp(&self.merit(&b.1, &b.0)))
     }
 }

@@ -33,8 +33,8 @@ pub(crate) enum Spot {
     Channel { velocity: bool, angle: bool },
     /// An input or output, of itself.
     OwnPath { input: bool },
-    /// A channel, of time.
-    Time,
+    /// A channel or an output, of time.
+    Time { output: bool },
 }
 
 /// The laws of a coordinate at a spot, each at every point of its grid, those of a load with each that
@@ -44,7 +44,7 @@ pub(crate) fn laws(spot: Spot, view: &View, loads: &[usize]) -> Vec<Law> {
     for (own, effect) in register::effects() {
         let card = effect.card();
         let fits = match (spot, card.needs) {
-            (Spot::Time, needs) => needs == Needs::Time,
+            (Spot::Time { .. }, needs) => needs == Needs::Time,
             (_, Needs::Coordinate) => true,
             (Spot::Channel { velocity, .. }, Needs::NoVelocity) => !velocity,
             (Spot::OwnPath { .. }, Needs::NoVelocity) => true,
@@ -64,15 +64,15 @@ pub(crate) fn laws(spot: Spot, view: &View, loads: &[usize]) -> Vec<Law> {
             continue;
         }
         let allowed = match spot {
-            Spot::Channel { .. } | Spot::Time => card.places.channel,
+            Spot::Channel { .. } | Spot::Time { output: false } => card.places.channel,
             Spot::OwnPath { input: true } => card.places.input,
-            Spot::OwnPath { input: false } => card.places.output,
+            Spot::OwnPath { input: false } | Spot::Time { output: true } => card.places.output,
         };
         let plain = card.mechanism == Mechanism::Law && card.states == 0 && card.made_for.is_none();
         if fits && allowed && plain && !card.parameters.is_empty() {
             let points = points(own.name, effect.as_ref(), &card, spot, view);
             match spot {
-                Spot::Time => found.extend(points.first().iter().flat_map(|law| law.moments(view))),
+                Spot::Time { .. } => found.extend(points.first().iter().flat_map(|law| law.moments(view))),
                 _ => found.extend(points),
             }
         }

@@ -154,7 +154,7 @@ impl Predictor {
     pub fn places_count(&self) -> usize {
         let plan = &self.model.plan;
         let channels = plan.sizes.w + plan.sizes.u;
-        channels * plan.sources.named + 2 * plan.sizes.y + plan.signals.parameters.len()
+        channels * plan.sources.named + 3 * plan.sizes.y + plan.signals.parameters.len()
     }
 
     /// Sampling time of the records in s.

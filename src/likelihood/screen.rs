@@ -89,15 +89,18 @@ impl Predictor {
             let laws = laws.map(|law| law.signed(direction)).collect();
             let remembering = match spot {
                 Spot::OwnPath { input } => of_an_instrument(input, &view),
-                Spot::Channel { .. } | Spot::Time => vec![],
+                Spot::Channel { .. } | Spot::Time { .. } => vec![],
             };
             let is_asked = |law: &Law| self.scope.effect(law.name);
             let remembering = remembering.into_iter().filter(is_asked).collect();
             // a free curve of time is the slow force
-            let knots = if spot == Spot::Time { None } else { knots(&z) }.unwrap_or_default();
+            let is_time = matches!(spot, Spot::Time { .. });
+            let knots = if is_time { None } else { knots(&z) }.unwrap_or_default();
             Spotted { site, source, z, knots, laws, remembering, loads, scale }
         };
         let channel = |e| Spot::Channel { velocity: plan.is_velocity(e), angle: plan.is_angle(e) };
+        let time = plan.sources.named - 1;
+        let clock = || column(&path.seen, entries, time);
         let groups = self.pushing_alike(path);
         let forces: Vec<usize> = groups.iter().map(|group| group[0]).collect();
         let moved = forces.iter().map(|&c| self.moved_by(path, c, scales[c]));
@@ -117,15 +120,16 @@ impl Predictor {
                 let direction = Some(moved_here[e]).filter(|d| d.abs() > DIRECT * most);
                 found.push(push(Site::Force(site), Some(e), z, spot, scales[site], direction));
             }
-            let (time, own) = (plan.sources.named - 1, scales[c]);
-            let z = column(&path.seen, entries, time);
-            found.push(push(Site::Force(c), Some(time), z, Spot::Time, own, None));
+            let spot = Spot::Time { output: false };
+            found.push(push(Site::Force(c), Some(time), clock(), spot, scales[c], None));
         }
         for o in (0..ny).filter(|&o| self.spread[o] > 0.0) {
             let source = plan.sources.at(Origin::Output(o));
             let z = column(&path.predicted, ny, o);
             let spot = Spot::OwnPath { input: false };
             found.push(push(Site::Output(o), source, z, spot, self.spread[o], None));
+            let spot = Spot::Time { output: true };
+            found.push(push(Site::Output(o), Some(time), clock(), spot, self.spread[o], None));
             // a law that is missing in a balance enters no state, and may have either sign
             let balance = plan.output_equations.balances[o];
             for &e in distinct.iter().filter(|&&e| balance && !plan.sources.is_output(e)) {
