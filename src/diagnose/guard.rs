@@ -1,27 +1,17 @@
 //! The guard: an extended model does not predict the test data worse than the model handed in.
 //!
-//! A likelihood is exact, a model is not. Of the mean squares that simulations leave of data that were used
-//! for nothing else,
-//!
-//! ```text
-//! mean over outputs of e_extended^2 / e_handed_in^2 <= LEAVES
-//! ```
-//!
-//! the bound that the search has for what it fits. A model that exceeds it, and whose errors are less probable
-//! by 20 to 1 as coloured noise, is no hypothesis any more: errors that only drift with what disturbs the
-//! plant are larger or smaller by chance. Of the models with one law less, or without the move of the parameters,
-//! that are not refuted, the most probable one by the records that were fitted is the answer; where all are, the
-//! one that exceeds the bound least is looked at in the same way (backward elimination: Miller, "Subset Selection
-//! in Regression", 2002). A model that does not forget its start within its records is not asked: what its
-//! simulation leaves is chance there (Forssell and Ljung, IEEE Trans. Automatic Control 45, 2000).
+//! A model that data refute which were used for nothing else (`validate/worse.rs`) is no hypothesis any more. Of the
+//! models with one law less, or without the move of the parameters, that are not refuted, the most probable one by
+//! the records that were fitted is the answer; where all are, the one that leaves least is looked at in the same way
+//! (backward elimination: Miller, "Subset Selection in Regression", 2002). A model that does not forget its start
+//! within its records is not asked: what its simulation leaves is chance there (Forssell and Ljung, IEEE Trans.
+//! Automatic Control 45, 2000).
 
 use std::sync::Arc;
 
 use crate::candidates::candidate::{Candidate, Wire};
 use crate::candidates::library::library;
-use crate::criteria::LEAVES;
 use crate::error::DiagnoseError;
-use crate::evidence::{NoiseModel, Stretches};
 use crate::fit::extended::extended;
 use crate::fit::finished::Finished;
 use crate::fit::hypothesis::Track;
@@ -29,10 +19,9 @@ use crate::fit::nuisance::Nuisance;
 use crate::fit::problem::{Added, Model};
 use crate::fit::refit::{Refit, Stop};
 use crate::innovations;
-use crate::likelihood::refutes;
 use crate::prepare::prepared::Prepared;
-use crate::statistics::rms;
-use crate::validate::test_error::{Scored, TestData, mean_square};
+use crate::validate::test_error::TestData;
+use crate::validate::worse::{Judged, judged};
 use crate::watch::Watch;
 
 /// What may go.
@@ -42,53 +31,6 @@ enum Going {
     Law(usize),
     /// The move of all parameters.
     Parameters,
-}
-
-/// What the test data say of a model.
-struct Judged {
-    /// What it leaves over what the model handed in leaves.
-    ratio: f64,
-    is_refuted: bool,
-}
-
-/// Mean square that one model leaves over that which another leaves, averaged over the outputs; infinite
-/// where the first leaves the finite numbers.
-fn ratio(of: &Scored, over: &Scored) -> f64 {
-    let one = |(of, over): (&Vec<f64>, &Vec<f64>)| {
-        // a run counts from where its start is forgotten, which may be later than that of another
-        let counts = of.iter().position(|e| e.is_finite()).unwrap_or(0);
-        let runs_away =
-            of.iter().zip(over).skip(counts).any(|(a, b)| b.is_finite() && !a.is_finite());
-        let unit = mean_square(over);
-        let known = unit > 0.0 && unit.is_finite();
-        known.then(|| if runs_away { f64::INFINITY } else { mean_square(of) / unit })
-    };
-    let ratios: Vec<f64> = of.errors.iter().zip(&over.errors).filter_map(one).collect();
-    if ratios.is_empty() { 1.0 } else { ratios.iter().sum::<f64>() / ratios.len() as f64 }
-}
-
-/// By how much more probable errors are than others, as a logarithm, each output's in the coloured
-/// noise that suits them: a simulation that drifts with what disturbs the plant is no worse for it.
-fn gain(of: &Scored, over: &Scored) -> f64 {
-    let one = |(of, over): (&Vec<f64>, &Vec<f64>)| {
-        let both: Vec<(f64, f64)> = of.iter().copied().zip(over.iter().copied()).collect();
-        let runs = both.chunk_by(|a, b| is_known(a) == is_known(b)).filter(|run| is_known(&run[0]));
-        let lengths: Vec<usize> = runs.map(<[_]>::len).collect();
-        let known = || both.iter().filter(|pair| is_known(pair));
-        let unit = rms(&known().map(|pair| pair.1).collect::<Vec<f64>>());
-        if !(unit > 0.0) {
-            return 0.0;
-        }
-        let noise = Stretches::of_lengths(&lengths);
-        let density = |r: Vec<f64>| noise.estimate(&r).log_likelihood;
-        density(known().map(|pair| pair.0 / unit).collect())
-            - density(known().map(|pair| pair.1 / unit).collect())
-    };
-    of.errors.iter().zip(&over.errors).map(one).sum()
-}
-
-fn is_known(pair: &(f64, f64)) -> bool {
-    pair.0.is_finite() && pair.1.is_finite()
 }
 
 /// An answer without what the test data refute.
@@ -104,11 +46,9 @@ pub(crate) fn guarded(
 ) -> Result<Finished, DiagnoseError> {
     let before = test.score(prepared.problem.system)?;
     loop {
-        let judged = |model: &Model| -> Result<Judged, DiagnoseError> {
+        let judged_of = |model: &Model| -> Result<Judged, DiagnoseError> {
             let after = test.score(&extended(&prepared.problem, model)?)?;
-            let ratio = ratio(&after, &before);
-            let is_refuted = ratio > LEAVES && refutes(gain(&after, &before), f64::INFINITY);
-            Ok(Judged { ratio, is_refuted })
+            Ok(judged(&after.errors, &before.errors))
         };
         let known = answer.fitted.model.known();
         let laws = (known..answer.causes()).map(Going::Law);
@@ -117,7 +57,7 @@ pub(crate) fn guarded(
         if may_go.is_empty() {
             return Ok(answer);
         }
-        let with = judged(&answer.fitted.model)?;
+        let with = judged_of(&answer.fitted.model)?;
         if !with.is_refuted || !innovations::forgets(prepared) {
             return Ok(answer);
         }
@@ -125,7 +65,7 @@ pub(crate) fn guarded(
         let mut best: Option<((f64, f64), Going, Model)> = None;
         for going in may_go {
             let Some(model) = without(prepared, &answer, going, watch) else { continue };
-            let Judged { ratio, is_refuted } = judged(&model)?;
+            let Judged { ratio, is_refuted } = judged_of(&model)?;
             let worth = match is_refuted {
                 true => f64::NEG_INFINITY,
                 false => {

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::Diagnosis;
+use crate::criteria::LEAVES;
 use crate::data::Record;
 use crate::search::fixture::{self, Run, mass};
 use crate::system::System;
@@ -31,17 +32,4 @@ fn a_cause_that_the_test_record_refutes_is_withdrawn_and_the_model_does_not_have
     let (before, after) = (&finding.before.test["y"], &finding.after.test["y"]);
     assert_eq!(before.rmse, after.rmse);
     assert!(finding.extended.effects.is_empty());
-}
-
-#[test]
-fn a_run_that_leaves_the_finite_numbers_is_worse_than_any() {
-    let scored = |errors: Vec<f64>| Scored { errors: vec![errors, vec![]], ..Scored::default() };
-    let plain = scored(vec![1.0, -1.0, f64::NAN]);
-    assert_eq!(ratio(&plain, &plain), 1.0);
-    assert_eq!(ratio(&scored(vec![2.0, -2.0, f64::NAN]), &plain), 4.0);
-    assert_eq!(ratio(&scored(vec![f64::INFINITY; 3]), &plain), f64::INFINITY);
-    let early = scored(vec![1.0, f64::NAN, f64::NAN]);
-    assert_eq!(ratio(&early, &plain), f64::INFINITY, "it ran away after a sample");
-    let late = scored(vec![f64::NAN, -1.0, f64::NAN]);
-    assert_eq!(ratio(&late, &plain), 1.0, "it forgets its start a sample later");
 }

@@ -5,7 +5,7 @@ use crate::likelihood::{Fitted, LikelihoodError, NoiseModel, Predictor, Scope};
 use crate::candidates::library::Allowed;
 use crate::data::Record;
 use crate::fit::extended::extended;
-use crate::fit::problem::{Grain, Model, Problem};
+use crate::fit::problem::{Grain, Model, Part, Problem};
 use crate::system::System;
 
 /// By how much noise inside the plant must be more probable for a search of its own: odds of 150 to
@@ -112,8 +112,12 @@ fn has_process(of: &Fitted) -> bool {
     matches!(&of.noise, NoiseModel::Predictor(noise) if noise.has_process())
 }
 
-/// The free run of a model over all samples, root mean square in units of the outputs' scales.
-pub(super) fn left(problem: &Problem<'_>, model: &Model) -> Option<f64> {
+/// What the free run of a model leaves of every output, over all samples that count.
+pub(super) fn left(problem: &Problem<'_>, model: &Model) -> Option<Vec<Vec<f64>>> {
     let y = problem.simulate(model, Grain::Fine)?;
-    Some(problem.mean_square(&y, crate::fit::problem::Part::All).sqrt())
+    let one = |o: usize| {
+        let off: Vec<f64> = problem.y[o].iter().zip(&y[o]).map(|(a, b)| a - b).collect();
+        problem.counted(o, &off, Part::All)
+    };
+    Some((0..y.len()).map(one).collect())
 }

@@ -10,7 +10,6 @@ use super::made::Made;
 use super::unforeseen::{foreseen, leaves_noise_inside, unforeseen};
 use crate::candidates::candidate::Wire;
 use crate::candidates::library::{Allowed, library};
-use crate::criteria::LEAVES;
 use crate::error::DiagnoseError;
 use crate::evidence::{Choices, turns_a_sensor};
 use crate::fit::extended::placed;
@@ -21,6 +20,7 @@ use crate::prepare::input_dependence::DEPENDS;
 use crate::prepare::operating_range::Nominal;
 use crate::prepare::prepared::Prepared;
 use crate::statistics::whiteness;
+use crate::validate::worse::judged;
 use crate::watch::Watch;
 
 /// Score of the Ljung-Box test up to which what is left counts as white.
@@ -209,7 +209,7 @@ fn by_innovations(
     // a likelihood is exact, a model is not: what it predicts must not get worse, where a free run predicts at
     // all (Forssell and Ljung, IEEE Trans. Automatic Control 45, 2000)
     let both = left(problem, &prepared.start).zip(left(problem, &answer.fitted.model));
-    let is_no_worse = both.is_some_and(|(before, after)| (after / before).powi(2) <= LEAVES);
+    let is_no_worse = both.is_some_and(|(before, after)| !judged(&after, &before).is_refuted);
     (is_no_worse || !base.forgets().unwrap_or(true)).then_some(answer)
 }
 

@@ -13,3 +13,4 @@ mod prediction_residuals;
 mod residuals;
 mod simulation_residuals;
 pub(crate) mod test_error;
+pub(crate) mod worse;
