@@ -4,6 +4,7 @@
 //! (numbers) / 2 ln(samples) - ln(choices), the clock being one name of the library more with one number
 //! (Schwarz, Annals of Statistics 6, 1978). What is as probable is said of the machine.
 
+use super::candidates::candidate::Wire;
 use super::criteria::LOOK_ALIKE;
 use super::data_faults::{Fault, first_samples};
 use super::diagnosis::{Diagnosis, searchable};
@@ -54,8 +55,18 @@ impl Judged {
     fn answer(&self, of: &Chosen<'_>) -> Result<(f64, f64), DiagnoseError> {
         let Chosen { whole, chosen, .. } = of;
         let extended = extended(&whole.problem, &chosen.fitted.model)?;
-        let moved = chosen.fitted.keys.iter().filter(|key| !matches!(key, Key::Start(..)));
-        let price = self.numbers(moved.count()) + chosen.found.choice;
+        let added = &chosen.fitted.model.added;
+        // a search by innovations pays for parameters by what records narrow them by, among its choices
+        let is_paid = |a: usize| {
+            chosen.is_by_innovations() && matches!(added[a].cause.wire, Wire::Parameter(_))
+        };
+        let is_number = |key: &&Key| match key {
+            Key::Start(..) => false,
+            Key::EffectParameter(a, _) => !is_paid(*a),
+            Key::Theta(_) => true,
+        };
+        let numbers = chosen.fitted.keys.iter().filter(is_number).count();
+        let price = self.numbers(numbers) + chosen.found.choice;
         Ok((self.log_likelihood(&extended), price))
     }
 }
