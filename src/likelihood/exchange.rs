@@ -2,17 +2,28 @@
 //!
 //! Causes come one after the other, so that what was found first was fitted without the others. With all of
 //! them there, every law of one number is tried as each free parameter of the model in its place; the
-//! likelier of the two stays, and one that is as likely is said.
+//! likelier of the two stays, and one that is as likely is said. The fit begins where the parameter does most nearly
+//! what the law does, to first order, with c the column of the law's number and t that of the parameter:
+//!
+//! ```text
+//! p = p_now + number (c' t) / (t' t)
+//! ```
+//!
 //! Source: Miller, "Subset Selection in Regression", 2nd ed., 2002, section 3.4 (sequential replacement).
 
 use rayon::prelude::*;
 
+use super::follow::Wanted;
 use super::found::Found;
-use super::hypothesis::{Hypothesis, Part};
+use super::hypothesis::{Hypothesis, Part, names};
 use super::predictor::Predictor;
 use super::ranked::FittedLaws;
-use super::tangent::Site;
+use super::replay::Pass;
+use super::tangent::{Site, gram};
 use super::weigh::AS_GOOD;
+
+/// Laws of one number, by name, each with parameters and what it does in units of what they do.
+type Shares = Vec<(Vec<(Site, Option<usize>, &'static str)>, Vec<(usize, f64)>)>;
 
 /// A law of a cause by a parameter: what it gains, and all causes after it.
 struct Exchange {
@@ -75,7 +86,11 @@ impl Predictor {
                 tried.extend(free.iter().map(|&p| (i, j, p)));
             }
         }
+        if tried.is_empty() {
+            return vec![];
+        }
         let value = self.merit(now, found);
+        let shares = self.shares(now, &free);
         let one = |&(cause, part, parameter): &(usize, usize, usize)| {
             if stop() {
                 return None;
@@ -87,7 +102,9 @@ impl Predictor {
             }
             let place = (Site::Parameter(parameter), None);
             causes.push(Found { parts: vec![Part::Parameter(parameter)], ..self.as_cause(place) });
-            let fitted = self.fit_all_raced(&mut causes, now, value)?;
+            let start =
+                shares.as_ref().map(|shares| self.standing_in(now, (&gone, parameter), shares));
+            let fitted = self.fit_all_raced(&mut causes, start.as_ref().unwrap_or(now), value)?;
             let gain = self.merit(&fitted, &causes) - value;
             // against the law that it was exchanged for
             if let Some(last) = causes.last_mut() {
@@ -104,6 +121,55 @@ impl Predictor {
             Some(Exchange { cause, part, parameter, gain, causes, fitted })
         };
         tried.par_iter().filter_map(one).collect()
+    }
+
+    /// What a law of one number does in units of what each free parameter does, along the path of a hypothesis: by the
+    /// number's name and the parameter.
+    fn shares(&self, now: &Hypothesis, free: &[usize]) -> Option<Shares> {
+        let model = self.extended(&now.parts, &now.theta).ok()?;
+        let wanted = Wanted { theta: true, seen: true, gate: Some(self.gate()) };
+        let run = self.run(&model, &now.noise, wanted).ok()?;
+        let mut columns = self.slopes(now, &run);
+        let first = columns.len();
+        let ones = |&p: &usize| (Site::Parameter(p), vec![1.0; run.path.len]).into();
+        columns.extend(free.iter().map(ones));
+        let pass = Pass::of(&run.path, &now.noise, false);
+        let square = gram(&run.path, &pass, &now.noise, &columns).square;
+        let share = |at: usize, i: usize| square[(at, first + i)] / square[(first + i, first + i)];
+        let mut at = 0;
+        let mut shares = vec![];
+        for part in &now.parts {
+            let own = match part {
+                Part::Law { law, .. } => law.free.len(),
+                Part::Parameter(_) => 1,
+            };
+            if own == 1 {
+                let all = free.iter().enumerate().map(|(i, &p)| (p, share(at, i)));
+                shares.push((names(std::slice::from_ref(part)), all.collect()));
+            }
+            at += own;
+        }
+        Some(shares)
+    }
+
+    /// A hypothesis whose parameter does what a law did that is gone, within the parameter's bounds.
+    fn standing_in(
+        &self,
+        now: &Hypothesis,
+        (gone, parameter): (&Part, usize),
+        shares: &Shares,
+    ) -> Hypothesis {
+        let mut start = now.clone();
+        let Part::Law { law, .. } = gone else { return start };
+        let own = names(std::slice::from_ref(gone));
+        let share = shares.iter().find(|(name, _)| *name == own);
+        let share = share.and_then(|(_, all)| all.iter().find(|(p, _)| *p == parameter));
+        let moved = share.map_or(0.0, |(_, share)| share * law.values[law.free[0]]);
+        let bounds = &self.model.plan.signals.parameters[parameter];
+        if moved.is_finite() {
+            start.theta[parameter] = (start.theta[parameter] + moved).clamp(bounds.min, bounds.max);
+        }
+        start
     }
 
     /// A cause at a place that is chosen among all of them, no parts in it yet.

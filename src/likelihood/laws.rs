@@ -72,7 +72,9 @@ pub(crate) fn laws(spot: Spot, view: &View, loads: &[usize]) -> Vec<Law> {
         if fits && allowed && plain && !card.parameters.is_empty() {
             let points = points(own.name, effect.as_ref(), &card, spot, view);
             match spot {
-                Spot::Time { .. } => found.extend(points.first().iter().flat_map(|law| law.moments(view))),
+                Spot::Time { .. } => {
+                    found.extend(points.first().iter().flat_map(|law| law.moments(view)))
+                }
                 _ => found.extend(points),
             }
         }
