@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! x[k|k] from the extended Kalman filter; x[k+i+1|k] = F(x[k+i|k], u[k+i], m[k+i|k]),
-//! m[k+i|k] = pole^i m[k|k],   yhat[k+K|k] = h(x[k+K|k], u[k+K]) + d[k+K|k]
+//! m[k+i|k] = pole^i m[k|k] (turned, where it turns),   yhat[k+K|k] = h(x[k+K|k], u[k+K]) + d[k+K|k]
 //! ```
 //!
 //! The gain is the one that the noise's likelihood gives (a Riccati equation), so that the predictor
@@ -16,7 +16,7 @@ use nalgebra::DMatrix;
 use super::error::LikelihoodError;
 use super::follow::Wanted;
 use super::model::NoiseModel;
-use super::noise::Noise;
+use super::noise::{Noise, Slow};
 use super::predictor::Predictor;
 use super::replay::Pass;
 use crate::data::Record;
@@ -125,7 +125,9 @@ impl Predictor {
             return Err(diverges);
         };
         let (nf, horizon) = (plant.forces(), horizon.max(1));
-        let faded: Vec<f64> = layout.parts(noise).map(|(_, part)| part.pole).collect();
+        let parts: Vec<Slow> = layout.parts(noise).map(|(_, part)| part).collect();
+        let partners: Vec<(usize, usize)> =
+            layout.turns(noise).map(|(at, partner, _)| (at - n, partner - n)).collect();
         let mut ahead = vec![vec![f64::NAN; self.drive.len()]; ny];
         let (mut next, mut force, mut to) = (vec![0.0; n], vec![0.0; nf], plant.jacobian());
         let (mut y, mut c) = (vec![0.0; ny], vec![0.0; ny * n]);
@@ -141,8 +143,11 @@ impl Predictor {
                 let entering = |i: i32, force: &mut [f64]| {
                     force.fill(0.0);
                     let one = &pass.mean[(k + 1) * na + n..];
-                    for (&channel, (part, one)) in layout.forces.iter().zip(faded.iter().zip(one)) {
-                        force[channel] += one * part.powi(i - 1);
+                    for (&channel, (part, one)) in layout.forces.iter().zip(parts.iter().zip(one)) {
+                        force[channel] += one * part.after(i - 1).0;
+                    }
+                    for &(at, partner) in &partners {
+                        force[layout.forces[at]] += one[partner] * parts[at].after(i - 1).1;
                     }
                 };
                 force.copy_from_slice(&path.force[k * nf..][..nf]);
@@ -175,7 +180,7 @@ impl Predictor {
                 for (i, &output) in layout.wander.iter().enumerate() {
                     let i = layout.forces.len() + i;
                     let one = pass.mean[(k + 1) * na + n + i];
-                    ahead[output][k + horizon] += one * faded[i].powi(horizon as i32 - 1);
+                    ahead[output][k + horizon] += one * parts[i].after(horizon as i32 - 1).0;
                 }
             }
         }

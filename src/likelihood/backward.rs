@@ -90,8 +90,8 @@ impl Back {
 
     /// The slope along the variance of a component that enters between samples `k` and `k + 1`.
     pub fn process(&mut self, path: &Path, k: usize, layout: &Layout, of: Component) -> f64 {
-        if let Some(at) = layout.entry(of) {
-            return self.entry(at);
+        if layout.entry(of).is_some() {
+            return layout.entries(of).map(|at| self.entry(at)).sum();
         }
         let (n, nf) = (path.n, path.forces);
         match of {

@@ -84,6 +84,7 @@ pub(crate) fn follow(
     let mut to = plant.jacobian();
     path.read.resize(len * to.read.len(), 0.0);
     let (mut x, mut slow) = (vec![0.0; n], vec![0.0; layout.len()]);
+    let mut carried = slow.clone();
     let (mut next, mut force) = (vec![0.0; n], vec![0.0; nf]);
     let mut row = vec![0; ny];
     let mut found = Followed {
@@ -163,9 +164,8 @@ pub(crate) fn follow(
             path.read[k * to.read.len()..][..to.read.len()].copy_from_slice(&to.read);
             path.theta[k * n * nt..][..n * nt].copy_from_slice(&to.theta);
             std::mem::swap(&mut x, &mut next);
-            for (i, part) in layout.parts(noise) {
-                slow[i] *= part.pole;
-            }
+            layout.carry(noise, &slow, &mut carried);
+            slow[n..].copy_from_slice(&carried[n..]);
             kalman.predict(&to.a, &to.g, &layout, noise);
             path.earlier.spread(k - segment.start, &to.g, (n, nf), &mut kalman.p);
             let size: f64 = x.iter().chain(&slow[n..]).map(|v| v.abs()).sum();

@@ -73,7 +73,7 @@ impl Predictor {
             let measurement = self.spread.iter().map(|s| 1e-5 / ratio.sqrt() * s * s);
             let mut noise = self.white(measurement.map(|r| r + f64::MIN_POSITIVE).collect());
             let variance = 1e-5 * ratio.sqrt() * scale * scale;
-            *at.slow(&mut noise) = Slow { variance, pole };
+            *at.slow(&mut noise) = Slow::fading(variance, pole);
             concentrated(path, &noise)
         });
         let best = tried.max_by(|a, b| a.1.total_cmp(&b.1));

@@ -22,6 +22,7 @@ mod all_parameters;
 mod autoregressive;
 mod averaged;
 mod backward;
+mod cycle;
 mod earlier;
 mod elimination;
 mod error;

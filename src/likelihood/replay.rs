@@ -89,13 +89,13 @@ impl Pass {
             At::Sample(_) => (),
             At::Start => {
                 for (slope, component) in to.iter_mut().zip(along) {
-                    let Some(at) = self.layout.entry(*component) else { continue };
                     let start = match *component {
                         Component::Slow(c) => noise.slow[c].start(),
                         Component::Wander(o) => noise.wander[o].start(),
                         _ => 1.0,
                     };
-                    *slope += back.entry(at) * start;
+                    let entries = self.layout.entries(*component);
+                    *slope += entries.map(|at| back.entry(at) * start).sum::<f64>();
                 }
             }
         });
@@ -271,7 +271,5 @@ fn step(path: &Path, k: usize, layout: &Layout, noise: &Noise, x: &[f64], to: &m
         }
         to[i] = sum;
     }
-    for (i, part) in layout.parts(noise) {
-        to[i] = part.pole * x[i];
-    }
+    layout.carry(noise, x, to);
 }

@@ -2,11 +2,12 @@
 //!
 //! Measurement noise is always there. White forces, slow forces and wander are added one at a time,
 //! the one that raises log L most, as long as log L rises by more than (numbers added) / 2 ln(samples);
-//! what has become superfluous is taken out again, and the linearisation is renewed at the end.
+//! a slow force may be one of a narrow band (`cycle.rs`); what has become superfluous is taken out again, and the linearisation is renewed at the end.
 //! Sources: Schwarz, Annals of Statistics 6, 1978; Kristensen, Madsen and Jorgensen, Automatica 40, 2004.
 
 use rayon::prelude::*;
 
+use super::cycle::turning;
 use super::error::LikelihoodError;
 use super::follow::{Followed, Wanted};
 use super::hypothesis::Hypothesis;
@@ -249,8 +250,14 @@ impl Predictor {
                 .map(|(noise, _)| nearly_most_likely(path, &noise, &noise.components()))
                 .collect();
             let merit = |noise: &Noise, value: f64| value - penalty * noise.count() as f64;
-            let best =
-                tried.into_iter().max_by(|a, b| merit(&a.0, a.1).total_cmp(&merit(&b.0, b.1)));
+            let cycle = match component {
+                Component::Slow(c) => turning(path, &noise, c),
+                _ => None,
+            };
+            let best = tried
+                .into_iter()
+                .chain(cycle)
+                .max_by(|a, b| merit(&a.0, a.1).total_cmp(&merit(&b.0, b.1)));
             if let Some((other, better)) = best
                 && merit(&other, better) > merit(&noise, value)
             {
@@ -283,8 +290,8 @@ impl Predictor {
 /// Sets a component, with its pole.
 fn place(noise: &mut Noise, component: Component, variance: f64, pole: f64) {
     match component {
-        Component::Slow(c) => noise.slow[c] = Slow { variance, pole },
-        Component::Wander(o) => noise.wander[o] = Slow { variance, pole },
+        Component::Slow(c) => noise.slow[c] = Slow::fading(variance, pole),
+        Component::Wander(o) => noise.wander[o] = Slow::fading(variance, pole),
         _ => noise.set(component, variance),
     }
 }

@@ -37,7 +37,7 @@ impl Predictor {
         let channels = 0..if found.is_empty() { 0 } else { now.noise.slow.len() };
         let poles = || POLES.into_iter().chain([1.0]);
         let tried: Vec<(Vec<Found>, Noise)> = channels
-            .filter(|&c| now.noise.slow[c].is_active())
+            .filter(|&c| now.noise.slow[c].is_active() && !now.noise.slow[c].is_turning())
             .flat_map(|c| poles().map(move |pole| (c, pole)))
             .flat_map(|(c, pole)| {
                 let mut noise = now.noise.clone();

@@ -144,7 +144,13 @@ pub(crate) fn gram(path: &Path, pass: &Pass, noise: &Noise, columns: &[Column]) 
             }
             for (i, part) in pass.layout.parts(noise) {
                 for j in 0..m {
-                    next[i * m + j] = part.pole * d[i * m + j];
+                    next[i * m + j] = part.carried().0 * d[i * m + j];
+                }
+            }
+            for (i, partner, over) in pass.layout.turns(noise) {
+                for j in 0..m {
+                    next[i * m + j] += over * d[partner * m + j];
+                    next[partner * m + j] -= over * d[i * m + j];
                 }
             }
             std::mem::swap(&mut d, &mut next);

@@ -1,4 +1,4 @@
-//! The augmented transition of one sample: F = [A, G of the forces that are states; 0, their poles].
+//! The augmented transition of one sample: F = [A, G of the forces that are states; 0, their poles, and turns].
 
 use super::noise::{Layout, Noise};
 use super::rows::Rows;
@@ -15,6 +15,10 @@ pub(crate) fn augment(f: &mut Rows, a: &[f64], g: &[f64], layout: &Layout, noise
         }
     }
     for (i, part) in layout.parts(noise) {
-        f.plain_mut(i)[i] = part.pole;
+        f.plain_mut(i)[i] = part.carried().0;
+    }
+    for (i, j, over) in layout.turns(noise) {
+        f.plain_mut(i)[j] = over;
+        f.plain_mut(j)[i] = -over;
     }
 }

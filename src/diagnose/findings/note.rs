@@ -242,20 +242,22 @@ pub struct Disturbance {
     pub place: String,
     /// What it is.
     pub kind: Disturbs,
-    /// Standard deviation: of the force in each sample, of its change from sample to sample, or of that of
-    /// a reading.
+    /// Standard deviation: of a force anew in each sample, or of one that swings; of the change of a slow force, or of
+    /// a reading, from sample to sample.
     pub size: f64,
     /// Unit.
     pub unit: String,
 }
 
 /// How a disturbance goes with time.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Disturbs {
     /// A force, or what acts beside a recorded input, anew in every sample.
     White,
     /// A force that changes slowly.
     Slow,
+    /// A force of a narrow band, which swings about once in a period, in s.
+    Cycle { period: f64 },
     /// A reading that wanders.
     Wander,
 }

@@ -107,10 +107,20 @@ fn disturbances(of: &Predictor, noise: &Noise) -> Vec<Disturbance> {
         let (kind, (place, unit)) = match component {
             Component::Measurement(_) => return None,
             Component::White(c) => (Disturbs::White, forces.get(c)?.clone()),
-            Component::Slow(c) => (Disturbs::Slow, forces.get(c)?.clone()),
+            Component::Slow(c) => {
+                let slow = noise.slow[c];
+                let period = std::f64::consts::TAU / slow.turn * of.step();
+                let kind =
+                    if slow.is_turning() { Disturbs::Cycle { period } } else { Disturbs::Slow };
+                (kind, forces.get(c)?.clone())
+            }
             Component::Wander(o) => (Disturbs::Wander, outputs.get(o)?.clone()),
         };
-        Some(Disturbance { place, kind, size: noise.variance(component).sqrt(), unit })
+        let variance = match (kind, component) {
+            (Disturbs::Cycle { .. }, Component::Slow(c)) => noise.slow[c].stationary(),
+            _ => noise.variance(component),
+        };
+        Some(Disturbance { place, kind, size: variance.sqrt(), unit })
     };
     noise.components().into_iter().filter_map(one).collect()
 }

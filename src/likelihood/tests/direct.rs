@@ -20,7 +20,7 @@ fn noisy(len: usize) -> (Path, Noise) {
     let predictor = Predictor::new(&system, &[record]).unwrap();
     let mut noise = predictor.white(vec![4e-4]);
     noise.white[0] = 0.09;
-    noise.slow[0] = Slow { variance: 2.5e-3, pole: 0.98 };
+    noise.slow[0] = Slow::fading(2.5e-3, 0.98);
     noise.wander[0] = Slow::walk(2.5e-5);
     let path = predictor.run(&predictor.model, &noise, Default::default()).unwrap().path;
     (path, noise)

@@ -87,7 +87,7 @@ pub fn noisy(len: usize) -> (Path, Noise) {
     let mut noise = predictor.white(vec![1e-4, 4e-4]);
     noise.white = vec![4.0, 0.0, 1.0];
     noise.slow[1] = Slow::walk(0.01);
-    noise.wander[1] = Slow { variance: 2e-5, pole: 0.9 };
+    noise.wander[1] = Slow::fading(2e-5, 0.9);
     let mut path = predictor.run(&predictor.model, &noise, Default::default()).unwrap().path;
     path.e[7] = f64::NAN; // one that was not measured
     (path, noise)

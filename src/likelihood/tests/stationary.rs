@@ -24,7 +24,7 @@ fn kept_gains_change_neither_likelihood_nor_slopes() {
     let predictor = Predictor::new(&system, &[record]).unwrap();
     let mut noise = predictor.white(vec![4e-4]);
     noise.white[0] = 0.25;
-    for wander in [Slow::NONE, Slow { variance: 1e-5, pole: 0.95 }] {
+    for wander in [Slow::NONE, Slow::fading(1e-5, 0.95)] {
         noise.wander[0] = wander;
         let mut path = predictor.run(&predictor.model, &noise, Default::default()).unwrap().path;
         for missing in [1500, 1501, 2100] {

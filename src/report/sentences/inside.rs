@@ -31,6 +31,10 @@ fn one(of: &Disturbance) -> String {
         Disturbs::Slow => {
             format!("a slow force on {place} that changes by {size} from sample to sample")
         }
+        Disturbs::Cycle { period } => format!(
+            "a force on {place} of a narrow band, as of waves, {size} (standard deviation) with a period of about {}",
+            with_unit(period, "s")
+        ),
         Disturbs::Wander => {
             format!("the reading of {place} wanders by {size} from sample to sample")
         }
@@ -52,6 +56,8 @@ mod tests {
         let said = inside(&[of(Disturbs::White, "carriage"), of(Disturbs::Wander, "encoder")]);
         assert!(said.contains(&format!("force of {} on carriage", with_unit(2.7, "N"))), "{said}");
         assert!(said.contains("reading of encoder wanders by"), "{said}");
+        let said = inside(&[of(Disturbs::Cycle { period: 4.3 }, "buoy")]);
+        assert!(said.contains(&format!("period of about {}", with_unit(4.3, "s"))), "{said}");
     }
 
     #[test]
