@@ -6,7 +6,8 @@
 //! Source: de Jong, JASA 83, 1988; Durbin and Koopman, "Time Series Analysis by State Space Methods",
 //! 2nd ed., 2012, section 4.5.
 
-use super::noise::{Component, Layout, Noise};
+use super::layout::Layout;
+use super::noise::{Component, Noise};
 use super::path::Path;
 use super::rows::{Rows, dot};
 use super::transition::augment;

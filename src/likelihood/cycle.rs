@@ -8,8 +8,8 @@
 //! pole = exp(-width turn),   var(m) = variance / (1 - pole^2)
 //! ```
 //!
-//! It is asked for where a process of first order leaves innovations that are not white (diagnostic checking: Box and
-//! Jenkins, "Time Series Analysis", 1976, ch. 8). Its angle and its width are looked for over the whole range, with the size that the force had, then ever finer about
+//! It is asked for where a process of first order leaves innovations that are not white (`poles.rs`). Its angle and its
+//! width are looked for over the whole range, with the size that the force had, then ever finer about
 //! the best; it stays where it raises log L by what its two numbers take.
 //! Sources: Harvey, "Forecasting, Structural Time Series Models and the Kalman Filter", 1989, section 2.3.4; Schwarz,
 //! Annals of Statistics 6, 1978.
@@ -21,13 +21,9 @@ use rayon::prelude::*;
 use super::intensities::{concentrated, nearly_most_likely};
 use super::noise::{Noise, Slow};
 use super::path::Path;
-use super::replay::Pass;
-use crate::statistics::whiteness;
 
 /// Turns of the slowest cycle within the longest stretch: fewer are a drift.
 const TURNS: f64 = 8.0;
-/// Score of the Ljung-Box test below which innovations count as white: nothing is foretold better.
-const WHITE: f64 = 3.0;
 /// Ratio of two angles that are looked at, and shares of an angle that are a width.
 const RATIO: f64 = 1.25;
 const WIDTHS: [f64; 3] = [0.03, 0.1, 0.3];
@@ -45,7 +41,7 @@ type Band = (f64, f64);
 pub(super) fn turning(path: &Path, noise: &Noise, c: usize) -> Option<(Noise, f64)> {
     let longest = path.segments.iter().map(|segment| segment.len()).max()?;
     let slowest = TAU * TURNS / longest as f64;
-    if !(slowest < PI / RATIO) || leaves_white(path, noise) {
+    if !(slowest < PI / RATIO) {
         return None;
     }
     let count = ((PI / slowest).ln() / RATIO.ln()) as i32;
@@ -69,15 +65,6 @@ pub(super) fn turning(path: &Path, noise: &Noise, c: usize) -> Option<(Noise, f6
     let lead = all.into_iter().take(FINER);
     lead.filter_map(|(noise, _, band)| finer(path, &noise, c, band))
         .max_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// Whether the innovations of every output are white.
-fn leaves_white(path: &Path, noise: &Noise) -> bool {
-    let pass = Pass::of(path, noise, false);
-    (0..path.outputs).all(|o| {
-        let own = pass.z.iter().skip(o).step_by(path.outputs.max(1)).copied();
-        whiteness(&own.filter(|z| z.is_finite()).collect::<Vec<f64>>()) < WHITE
-    })
 }
 
 /// The same about one band.

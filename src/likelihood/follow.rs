@@ -7,7 +7,8 @@
 
 use super::earlier::Earlier;
 use super::kalman::Kalman;
-use super::noise::{Layout, Noise};
+use super::layout::Layout;
+use super::noise::Noise;
 use super::parametrised::Model;
 use super::path::Path;
 use crate::system::{Drive, Origin, System, Transition};

@@ -6,7 +6,8 @@
 
 use std::cell::RefCell;
 
-use super::noise::{Component, Layout, Noise};
+use super::layout::Layout;
+use super::noise::{Component, Noise};
 use super::path::Path;
 use super::replay::Pass;
 use crate::optimise::{Lbfgs, Objective, Optimiser, Stop};

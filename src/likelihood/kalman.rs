@@ -6,7 +6,8 @@
 //! the other, so that their standardised innovations are those of the Cholesky factor of S.
 //! Source: Kalman, J. Basic Eng. 82, 1960.
 
-use super::noise::{Layout, Noise};
+use super::layout::Layout;
+use super::noise::Noise;
 use super::rows::{Rows, dot};
 use super::transition::augment;
 

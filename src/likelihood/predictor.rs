@@ -8,7 +8,8 @@ use statrs::distribution::{ContinuousCDF, Normal};
 
 use super::error::LikelihoodError;
 use super::follow::{Followed, Start, Wanted, follow};
-use super::noise::{Layout, Noise};
+use super::layout::Layout;
+use super::noise::Noise;
 use super::parametrised::Model;
 use super::path::Path;
 use super::replay::Pass;

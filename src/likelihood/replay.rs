@@ -8,7 +8,8 @@
 
 use super::backward::Back;
 use super::kalman::Kalman;
-use super::noise::{Component, Layout, Noise};
+use super::layout::Layout;
+use super::noise::{Component, Noise};
 use super::path::Path;
 use super::rows::SETTLED;
 

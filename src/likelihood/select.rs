@@ -2,12 +2,11 @@
 //!
 //! Measurement noise is always there. White forces, slow forces and wander are added one at a time,
 //! the one that raises log L most, as long as log L rises by more than (numbers added) / 2 ln(samples);
-//! a slow force may be one of a narrow band (`cycle.rs`); what has become superfluous is taken out again, and the linearisation is renewed at the end.
+//! the poles of slow parts are chosen (`poles.rs`); what has become superfluous is taken out again, and the linearisation is renewed at the end.
 //! Sources: Schwarz, Annals of Statistics 6, 1978; Kristensen, Madsen and Jorgensen, Automatica 40, 2004.
 
 use rayon::prelude::*;
 
-use super::cycle::turning;
 use super::error::LikelihoodError;
 use super::follow::{Followed, Wanted};
 use super::hypothesis::Hypothesis;
@@ -26,10 +25,6 @@ const LEFT: [f64; 2] = [1.0, 1e-2];
 const FITTED: usize = 3;
 /// Components at most: each is named in the result, and a record tells no more apart.
 const MOST: usize = 6;
-/// Poles that are fitted, of all that are looked at.
-const FITTED_POLES: usize = 2;
-/// Poles that a slow component may have beside 1.
-pub(crate) const POLES: [f64; 6] = [0.3, 0.6, 0.8, 0.9, 0.97, 0.99];
 /// Renewals of the linearisation at most, and the change of log L at which it is settled.
 const RENEWED: usize = 3;
 const SETTLED: f64 = 0.5;
@@ -229,44 +224,6 @@ impl Predictor {
         groups
     }
 
-    /// The same noise with the poles that its slow parts call for.
-    fn poled(&self, path: &Path, mut noise: Noise, mut value: f64) -> Noise {
-        let penalty = 0.5 * self.observed().ln();
-        let slow = |c: &Component| matches!(c, Component::Slow(_) | Component::Wander(_));
-        for component in noise.components().into_iter().filter(slow) {
-            let now = pole(&noise, component);
-            let other = |&pole: &f64| {
-                let mut noise = noise.clone();
-                let variance = noise.variance(component);
-                place(&mut noise, component, variance, pole);
-                concentrated(path, &noise)
-            };
-            let poles = POLES.par_iter().chain([1.0].par_iter()).filter(|&&other| other != now);
-            let mut likely: Vec<_> = poles.map(other).collect();
-            likely.sort_by(|a, b| b.1.total_cmp(&a.1));
-            likely.truncate(FITTED_POLES);
-            let tried: Vec<_> = likely
-                .into_par_iter()
-                .map(|(noise, _)| nearly_most_likely(path, &noise, &noise.components()))
-                .collect();
-            let merit = |noise: &Noise, value: f64| value - penalty * noise.count() as f64;
-            let cycle = match component {
-                Component::Slow(c) => turning(path, &noise, c),
-                _ => None,
-            };
-            let best = tried
-                .into_iter()
-                .chain(cycle)
-                .max_by(|a, b| merit(&a.0, a.1).total_cmp(&merit(&b.0, b.1)));
-            if let Some((other, better)) = best
-                && merit(&other, better) > merit(&noise, value)
-            {
-                (noise, value) = (other, better);
-            }
-        }
-        noise
-    }
-
     /// The noise without what it can do without, of so many parts at least beside that of the sensors.
     fn pruned(&self, path: &Path, mut noise: Noise, least: usize) -> Noise {
         let penalty = 0.5 * self.observed().ln();
@@ -288,18 +245,10 @@ impl Predictor {
 }
 
 /// Sets a component, with its pole.
-fn place(noise: &mut Noise, component: Component, variance: f64, pole: f64) {
+pub(super) fn place(noise: &mut Noise, component: Component, variance: f64, pole: f64) {
     match component {
         Component::Slow(c) => noise.slow[c] = Slow::fading(variance, pole),
         Component::Wander(o) => noise.wander[o] = Slow::fading(variance, pole),
         _ => noise.set(component, variance),
-    }
-}
-
-fn pole(noise: &Noise, component: Component) -> f64 {
-    match component {
-        Component::Slow(c) => noise.slow[c].pole,
-        Component::Wander(o) => noise.wander[o].pole,
-        _ => 1.0,
     }
 }

@@ -17,8 +17,8 @@ use super::found::{Found, dealt, joined, laws};
 use super::hypothesis::{Hypothesis, Part};
 use super::laws::offsets;
 use super::noise::Noise;
+use super::poles::POLES;
 use super::predictor::Predictor;
-use super::select::POLES;
 use super::tangent::Site;
 
 /// Of all poles and constants, those that are fitted to the end.

@@ -1,6 +1,7 @@
 //! The augmented transition of one sample: F = [A, G of the forces that are states; 0, their poles, and turns].
 
-use super::noise::{Layout, Noise};
+use super::layout::Layout;
+use super::noise::Noise;
 use super::rows::Rows;
 
 /// Writes F, `a` being states by states, `g` states by forces, both row by row.

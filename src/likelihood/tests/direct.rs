@@ -13,7 +13,7 @@ fn noisy(len: usize) -> (Path, Noise) {
         measurement: vec![0.02],
         slow: vec![0.05],
         wander: vec![0.005],
-        fades: 0.0,
+        ..Sizes::default()
     };
     let system = system(&accelerometer());
     let record = simulate(&system, &excitation(len, 0.05, 1.0, 2), &sizes, 3);

@@ -4,7 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use super::plants::{GANTRY, OSCILLATOR, Sizes, excitation, simulate, system};
 use crate::Predictor;
-use crate::noise::{Component, Layout, Noise, Slow};
+use crate::layout::Layout;
+use crate::noise::{Component, Noise, Slow};
 use crate::path::Path;
 use crate::replay::Pass;
 
@@ -45,7 +46,10 @@ pub fn joint(path: &Path, noise: &Noise) -> (DVector<f64>, DMatrix<f64>) {
             }
         }
         for (i, part) in layout.parts(noise) {
-            f[(i, i)] = part.pole;
+            f[(i, i)] = part.pole * part.turn.cos();
+        }
+        for (i, j, over) in layout.turns(noise) {
+            (f[(i, j)], f[(j, i)]) = (over, -over);
         }
         for i in 0..n {
             x[(i, sources)] -= path.jump[k * n + i];
@@ -80,12 +84,13 @@ pub fn noisy(len: usize) -> (Path, Noise) {
         measurement: vec![0.01, 0.02],
         wander: vec![0.0, 0.005],
         slow: vec![0.0, 0.1],
-        fades: 0.0,
+        ..Sizes::default()
     };
     let record = simulate(&system, &excitation(len, 0.02, 20.0, 2), &sizes, 3);
     let predictor = Predictor::new(&system, &[record]).unwrap();
     let mut noise = predictor.white(vec![1e-4, 4e-4]);
     noise.white = vec![4.0, 0.0, 1.0];
+    noise.slow[0] = Slow { variance: 0.05, pole: 0.95, turn: 0.4 };
     noise.slow[1] = Slow::walk(0.01);
     noise.wander[1] = Slow::fading(2e-5, 0.9);
     let mut path = predictor.run(&predictor.model, &noise, Default::default()).unwrap().path;
@@ -132,7 +137,7 @@ fn the_filter_and_its_replay_agree() {
     let predictor = Predictor::new(&system, &[record]).unwrap();
     let mut noise = predictor.white(vec![1e-4, 4e-4]);
     noise.white[0] = 4.0;
-    noise.slow[1] = Slow::walk(1e-3);
+    noise.slow[1] = Slow { variance: 1e-3, pole: 0.98, turn: 0.2 };
     noise.wander[0] = Slow::walk(1e-7);
     let run = predictor.run(&predictor.model, &noise, Default::default()).unwrap();
     let pass = Pass::of(&run.path, &noise, false);
@@ -212,7 +217,7 @@ pub fn sloped((path, noise): &(Path, Noise), share: f64) -> Vec<Sloped> {
 #[test]
 fn slopes_of_the_likelihood_are_those_of_differences() {
     let all = sloped(&noisy(60), 1e-4);
-    assert_eq!(all.len(), 6);
+    assert_eq!(all.len(), 7);
     for Sloped { component, variance, slope, difference } in all {
         assert!(
             (slope - difference).abs() < 1e-4 * difference.abs().max(1e-3 / variance),

@@ -3,6 +3,7 @@
 
 mod ahead;
 mod all_parameters;
+mod cycle;
 mod direct;
 mod earlier;
 mod filter;

@@ -83,6 +83,8 @@ pub struct Sizes {
     pub slow: Vec<f64>,
     /// Share of a slow force that is gone after a sample; 0: it walks.
     pub fades: f64,
+    /// Angle in rad by which a slow force turns from sample to sample.
+    pub turns: f64,
     pub measurement: Vec<f64>,
     pub wander: Vec<f64>,
 }
@@ -110,7 +112,7 @@ pub fn simulate_by(
     let mut drive = Drive { inputs: vec![vec![0.0; n]], segments: vec![0..n], clocks: vec![0.0] };
     let nf = plan.sizes.w + plan.sizes.u;
     let get = |v: &[f64], i: usize| v.get(i).copied().unwrap_or(0.0);
-    let (mut slow, mut wander) = (vec![0.0; nf], vec![0.0; ny]);
+    let (mut slow, mut partner, mut wander) = (vec![0.0; nf], vec![0.0; nf], vec![0.0; ny]);
     let mut outputs = vec![vec![]; ny];
     let mut seen = vec![0.0; ny];
     let mut x: Vec<f64> = signals.initial();
@@ -134,7 +136,14 @@ pub fn simulate_by(
         }
         let mut w = vec![0.0; nf];
         for c in 0..nf {
-            slow[c] += -sizes.fades * slow[c] + get(&sizes.slow, c) * random.normal();
+            let size = get(&sizes.slow, c);
+            slow[c] += -sizes.fades * slow[c] + size * random.normal();
+            if sizes.turns != 0.0 {
+                partner[c] += -sizes.fades * partner[c] + size * random.normal();
+                let (sine, cosine) = sizes.turns.sin_cos();
+                let (m, p) = (slow[c], partner[c]);
+                (slow[c], partner[c]) = (cosine * m + sine * p, cosine * p - sine * m);
+            }
             w[c] = slow[c] + get(&sizes.white, c) * random.normal();
         }
         let mut direct = vec![0.0; ny * nf];

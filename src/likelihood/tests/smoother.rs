@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::filter::{joint, noisy};
-use crate::noise::Layout;
+use crate::layout::Layout;
 use crate::replay::Pass;
 
 #[test]

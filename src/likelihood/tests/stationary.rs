@@ -2,7 +2,8 @@
 //! likelihood and its slopes are those of the whole recursion, also about samples that are missing.
 
 use super::plants::{OSCILLATOR, Sizes, excitation, simulate, system};
-use crate::noise::{Layout, Slow};
+use crate::layout::Layout;
+use crate::noise::Slow;
 use crate::replay::Pass;
 use crate::{Noise, Predictor};
 
