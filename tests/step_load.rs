@@ -1,5 +1,5 @@
-//! A load that is put on within a record, beside parameters that are wrong: named with its size and its moment,
-//! whether noise is at the sensors only or inside the plant, too.
+//! A load that is put on within a record, or a sensor that slips, beside parameters that are wrong: named with its size
+//! and its moment, whether noise is at the sensors only or inside the plant, too.
 
 use lacuna::data::Record;
 use lacuna::diagnose::{Cause, Diagnosis, Finding};
@@ -65,6 +65,43 @@ fn a_load_that_is_put_on_is_named_in_a_plant_that_is_disturbed() {
     let noise = Sizes { white: vec![1.0], measurement: vec![0.002], ..Sizes::default() };
     for (seed, from) in [(5, 25.0), (6, 41.7)] {
         asks_for_the_brake(&diagnosed(record(from, &noise, seed)), from);
+    }
+}
+
+/// A second sensor feeds the loop: what the first one reads since it slipped is what it is.
+fn slipped(from: f64, by: f64, noise: &Sizes, seed: u64) -> Record {
+    let mut record = record(1e6, noise, seed);
+    let readings = record.outputs[0].values.iter_mut().enumerate();
+    readings.filter(|(k, _)| *k as f64 * STEP >= from).for_each(|(_, y)| *y += by);
+    record
+}
+
+fn asks_for_the_sensor(finding: &Finding, from: f64, by: f64) {
+    let names: Vec<String> = finding.causes.iter().map(Cause::name).collect();
+    let laws: Vec<&Cause> = finding.causes.iter().filter(|c| c.effect != "parameter").collect();
+    assert_eq!(laws.len(), 1, "{names:?}");
+    let sensor = laws[0];
+    assert_eq!((&sensor.effect[..], &sensor.into[..], &sensor.of), ("bias", "where", &None));
+    let value = &sensor.parameters[0];
+    let error = value.std_error.unwrap();
+    assert!((value.value - by).abs() < 4.0 * error && error < 0.2 * by, "{value:?}");
+    let onset = sensor.onset.unwrap_or_else(|| panic!("{names:?} begins"));
+    assert!((onset.time - from).abs() < 4.0 * onset.std_error.unwrap() + STEP, "{onset:?}");
+}
+
+#[test]
+fn a_sensor_that_slips_is_named_where_parameters_are_wrong() {
+    let sensor = Sizes { measurement: vec![0.002], ..Sizes::default() };
+    for (seed, from) in [(7, 25.0), (8, 41.7)] {
+        asks_for_the_sensor(&diagnosed(slipped(from, 0.004, &sensor, seed)), from, 0.004);
+    }
+}
+
+#[test]
+fn a_sensor_that_slips_is_named_in_a_plant_that_is_disturbed() {
+    let noise = Sizes { white: vec![1.0], measurement: vec![0.002], ..Sizes::default() };
+    for (seed, from) in [(7, 25.0), (8, 41.7)] {
+        asks_for_the_sensor(&diagnosed(slipped(from, 0.01, &noise, seed)), from, 0.01);
     }
 }
 

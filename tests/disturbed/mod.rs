@@ -15,6 +15,7 @@ mod rectified;
 mod revolving;
 mod sluggish;
 mod tight_loop;
+mod waves;
 
 use lacuna::data::{Record, Signal};
 use lacuna::diagnose::{Diagnosis, Finding, Verdict};

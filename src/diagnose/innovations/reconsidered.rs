@@ -155,7 +155,8 @@ fn by_innovations(
     let problem = &prepared.problem;
     let (base, known) = predictors(prepared, allowed, answer)?;
     let rivals = Rivals::of(&known);
-    if !rivals.call_for_more(CLEARLY) || watch.stopped() {
+    let is_called_for = rivals.call_for_more(CLEARLY);
+    if !(is_called_for || rivals.have_a_walk()) || watch.stopped() {
         return None;
     }
     watch.report(0.92, "searching by innovations");
@@ -171,8 +172,9 @@ fn by_innovations(
         base.explain((given, most), &held, noise, &|| watch.stopped()).ok()
     };
     // beside noise inside the plant, numbers of simulations and their errors are not to be had: of two answers
-    // that are as probable, the one by innovations is taken
-    let is_better = |found: &Explanation| found.criterion() > of_answer - CLEARLY;
+    // that are as probable, the one by innovations is taken; where only a sensor wanders, simulations are as good
+    let least = of_answer + if is_called_for { -CLEARLY } else { CLEARLY };
+    let is_better = |found: &Explanation| found.criterion() > least;
     let concluded = |found: &Explanation| {
         let mut own = finished(prepared, &known, (&base, found))?;
         own.dependence = depends(prepared, (&base, found), &own)?;
@@ -196,7 +198,9 @@ fn by_innovations(
             made.begun_with(&begun, || explained(&begun, noise))
         }
     };
-    let none = is_bare && from_nothing.as_ref().is_some_and(|found| found.causes.is_empty());
+    let none = is_called_for
+        && is_bare
+        && from_nothing.as_ref().is_some_and(|found| found.causes.is_empty());
     let ends = from_nothing.map(|found| (found, None)).into_iter();
     let (found, gone_on) = ends
         .chain(from_answer.map(|found| (found, gone_on)))
