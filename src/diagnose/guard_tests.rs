@@ -1,6 +1,5 @@
 //! What the test data refute is taken back.
 
-use super::*;
 use crate::Diagnosis;
 use crate::criteria::LEAVES;
 use crate::data::Record;
