@@ -26,15 +26,13 @@ use super::path::Path;
 const TURNS: f64 = 8.0;
 /// Ratio of two angles that are looked at, and shares of an angle that are a width.
 const RATIO: f64 = 1.25;
-const WIDTHS: [f64; 3] = [0.03, 0.1, 0.3];
-/// Cycles that are looked at more finely, and how often, steps being halved.
-const FINER: usize = 2;
-const TIMES: usize = 4;
-/// Sizes of a cycle over that of the force in whose place it is.
-const SIZES: [f64; 3] = [0.1, 1.0, 10.0];
+const WIDTHS: [f64; 2] = [0.05, 0.2];
+/// Factor of a size about the best, and how often all steps are halved there.
+const FACTOR: f64 = 4.0;
+const TIMES: usize = 3;
 
-/// An angle and a width, as logarithms.
-type Band = (f64, f64);
+/// An angle, its width as a share of it, and a mean square, all as logarithms.
+type Band = [f64; 3];
 
 /// The most likely noise whose slow force in a channel turns, and its log likelihood; `None` where records are too
 /// short for any.
@@ -46,53 +44,43 @@ pub(super) fn turning(path: &Path, noise: &Noise, c: usize) -> Option<(Noise, f6
     }
     let count = ((PI / slowest).ln() / RATIO.ln()) as i32;
     let angles = (0..count).map(|i| slowest.ln() + f64::from(i) * RATIO.ln());
-    let bands: Vec<Band> =
-        angles.flat_map(|angle| WIDTHS.map(|width| (angle, width.ln()))).collect();
     // as large as the force that it stands for is over the record
     let now = noise.slow[c];
     let square = now.variance * now.start().min(longest as f64);
-    let at = |band: &Band| {
-        let tried = SIZES.iter().map(|size| {
-            let mut noise = noise.clone();
-            noise.slow[c] = cycle(*band, size * square);
-            concentrated(path, &noise)
-        });
-        let best = tried.filter(|(_, value)| value.is_finite());
-        best.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(noise, value)| (noise, value, *band))
+    let at = |band: Band| {
+        let mut noise = noise.clone();
+        noise.slow[c] = cycle(band);
+        let (noise, value) = concentrated(path, &noise);
+        (noise, if band[0] < PI.ln() { value } else { f64::NEG_INFINITY }, band)
     };
-    let mut all: Vec<(Noise, f64, Band)> = bands.par_iter().filter_map(at).collect();
-    all.sort_by(|a, b| b.1.total_cmp(&a.1));
-    let lead = all.into_iter().take(FINER);
-    lead.filter_map(|(noise, _, band)| finer(path, &noise, c, band))
-        .max_by(|a, b| a.1.total_cmp(&b.1))
-}
-
-/// The same about one band.
-fn finer(path: &Path, noise: &Noise, c: usize, mut band: Band) -> Option<(Noise, f64)> {
-    let mut best = nearly_most_likely(path, noise, &noise.components());
-    let mut step = (0.5 * RATIO.ln(), 0.5 * (WIDTHS[1] / WIDTHS[0]).ln());
+    let bands: Vec<Band> =
+        angles.flat_map(|angle| WIDTHS.map(|width| [angle, width.ln(), square.ln()])).collect();
+    let looked = bands.into_par_iter().map(at);
+    let mut best = looked.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let mut steps = [0.5 * RATIO.ln(), 0.5 * (WIDTHS[1] / WIDTHS[0]).ln(), FACTOR.ln()];
     for _ in 0..TIMES {
-        let square = best.0.slow[c].variance * best.0.slow[c].start();
-        let (a, w) = band;
-        let near = [(a - step.0, w), (a + step.0, w), (a, w - step.1), (a, w + step.1)];
-        let other = |band: &Band| {
-            let mut noise = best.0.clone();
-            noise.slow[c] = cycle(*band, square);
-            let (noise, value) = nearly_most_likely(path, &noise, &noise.components());
-            (noise, value, *band)
-        };
-        let tried = near.par_iter().filter(|band| band.0 < PI.ln()).map(other);
-        match tried.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|other| other.1 > best.1) {
-            Some((noise, value, better)) => (best, band) = ((noise, value), better),
-            None => step = (0.5 * step.0, 0.5 * step.1),
+        for (i, step) in steps.into_iter().enumerate() {
+            let moved = |by: f64| {
+                let mut band = best.2;
+                band[i] += by;
+                at(band)
+            };
+            let (less, more) = rayon::join(|| moved(-step), || moved(step));
+            for other in [less, more] {
+                if other.1 > best.1 {
+                    best = other;
+                }
+            }
         }
+        steps = steps.map(|step| 0.5 * step);
     }
-    best.1.is_finite().then_some(best)
+    let (noise, value, _) = best;
+    value.is_finite().then(|| nearly_most_likely(path, &noise, &noise.components()))
 }
 
-/// The cycle of a band that has a mean square.
-fn cycle((angle, width): Band, square: f64) -> Slow {
+/// The cycle of a band.
+fn cycle([angle, width, square]: Band) -> Slow {
     let turn = angle.exp();
     let pole = (-width.exp() * turn).exp();
-    Slow { variance: square * (1.0 - pole * pole), pole, turn }
+    Slow { variance: square.exp() * (1.0 - pole * pole), pole, turn }
 }
