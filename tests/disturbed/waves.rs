@@ -42,7 +42,7 @@ fn waves_are_no_cause() {
 
 #[test]
 fn dry_friction_is_found_among_waves() {
-    let friction = "into = \"on_mass\"\nof = \"rate\"\neffect.coulomb_friction = { level = -0.3 }";
+    let friction = "into = \"on_mass\"\nof = \"rate\"\neffect.coulomb_friction = { level = -0.3, width = 0.01 }";
     for seed in [6, 7] {
         let finding = diagnosed(among_waves(friction, seed));
         let names: Vec<String> = finding.causes.iter().map(Cause::name).collect();
