@@ -39,10 +39,22 @@ pub(crate) fn sets(
     spot: &Spotted,
     offset: Option<&Spotted>,
 ) -> Vec<Vec<Part>> {
+    let pass = Pass::of(path, noise, false);
+    let alone = |laws: &[Law]| -> Vec<f64> {
+        let columns: Vec<Column> = laws
+            .iter()
+            .map(|law| (spot.site, law.columns(&spot.z, &[]).swap_remove(0)).into())
+            .collect();
+        let sums = gram(path, &pass, noise, &columns);
+        let one = |i: usize| solved(&sums.square, &sums.slope, &[i]).map_or(0.0, |s| s.0);
+        (0..laws.len()).map(one).collect()
+    };
+    let begun = Law::begun(&spot.laws, step(&spot.z), alone);
     let mut columns: Vec<Column> = vec![];
     let mut entries = vec![];
     for own in [Some(spot), offset.filter(|o| o.source != spot.source)].into_iter().flatten() {
-        for law in &own.laws {
+        let begun = begun.iter().filter(|_| own.source == spot.source);
+        for law in own.laws.iter().chain(begun) {
             let first = columns.len();
             let own_columns = law.columns(&own.z, own.load_of(law)).into_iter();
             columns.extend(own_columns.map(|column| (own.site, column).into()));
@@ -50,7 +62,6 @@ pub(crate) fn sets(
             entries.push(Entry { law, site: own.site, source: own.source, columns });
         }
     }
-    let pass = Pass::of(path, noise, false);
     let sums = gram(path, &pass, noise, &columns);
     let joined = |of: &[usize]| -> Vec<usize> {
         of.iter().flat_map(|&e| entries[e].columns.iter().copied()).collect()
@@ -119,6 +130,11 @@ pub(crate) fn sets(
                 .collect()
         })
         .collect()
+}
+
+/// From sample to sample of a clock.
+fn step(z: &[f64]) -> f64 {
+    z.windows(2).map(|two| two[1] - two[0]).find(|step| *step > 0.0).unwrap_or(f64::INFINITY)
 }
 
 /// Whether two laws of a place may act together: they have other names, or are waves of other orders, as a periodic
