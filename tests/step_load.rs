@@ -91,7 +91,8 @@ fn asks_for_the_sensor(record: Record, from: f64) {
     let error = value.std_error.unwrap();
     assert!((value.value - 0.02).abs() < 4.0 * error && error < 0.004, "{value:?}");
     let onset = sensor.onset.unwrap_or_else(|| panic!("{names:?} begins"));
-    assert!((onset.time - from).abs() < 0.5, "{onset:?}");
+    // simulations fit a moment from a grid, and may stay between two samples beside the best one
+    assert!((onset.time - from).abs() < 1.0, "{onset:?}");
 }
 
 #[test]
