@@ -40,7 +40,7 @@ pub(crate) fn sets(
     offset: Option<&Spotted>,
 ) -> Vec<Vec<Part>> {
     let pass = Pass::of(path, noise, false);
-    let alone = |laws: &[Law]| -> Vec<f64> {
+    let gains = |laws: &[Law]| -> Vec<f64> {
         let columns: Vec<Column> = laws
             .iter()
             .map(|law| (spot.site, law.columns(&spot.z, &[]).swap_remove(0)).into())
@@ -49,7 +49,7 @@ pub(crate) fn sets(
         let one = |i: usize| solved(&sums.square, &sums.slope, &[i]).map_or(0.0, |s| s.0);
         (0..laws.len()).map(one).collect()
     };
-    let begun = Law::begun(&spot.laws, step(&spot.z), alone);
+    let begun = Law::begun(&spot.laws, step(&spot.z), gains);
     let mut columns: Vec<Column> = vec![];
     let mut entries = vec![];
     for own in [Some(spot), offset.filter(|o| o.source != spot.source)].into_iter().flatten() {
