@@ -6,6 +6,8 @@
 
 use std::cell::RefCell;
 
+use rayon::prelude::*;
+
 use super::layout::Layout;
 use super::noise::{Component, Noise};
 use super::path::Path;
@@ -77,6 +79,20 @@ fn until(stop: Stop, path: &Path, noise: &Noise, along: &[Component]) -> (Noise,
     let best = score.at(&theta);
     let value = score.pass.borrow_mut().forward(path, &best);
     (best, value)
+}
+
+/// The first so many of some noises by their log likelihoods, each fitted from where it stands.
+pub(crate) fn leading_fitted(
+    path: &Path,
+    mut looked: Vec<(Noise, f64)>,
+    count: usize,
+) -> Vec<(Noise, f64)> {
+    looked.sort_by(|a, b| b.1.total_cmp(&a.1));
+    looked.truncate(count);
+    let fitted = looked
+        .into_par_iter()
+        .map(|(noise, _)| nearly_most_likely(path, &noise, &noise.components()));
+    fitted.collect()
 }
 
 /// Log likelihood after all variances have been multiplied by their common most likely factor, and

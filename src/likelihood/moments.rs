@@ -72,8 +72,8 @@ impl Law {
     /// How finely a moment is told by a law that begins at it: half of what that takes.
     pub(super) fn resolution(&self, i: usize) -> Option<f64> {
         let parameters = &self.card.parameters;
-        let begins = self.card.properties.begins.filter(|own| parameters[i].name == own.from)?;
-        let is_rise = |own: &EffectParameter| own.role == Role::Held && own.name != begins.from;
+        let is_rise = |own: &EffectParameter| own.role == Role::Held;
+        self.moment().filter(|&from| from == i)?;
         parameters.iter().position(is_rise).map(|rise| 0.5 * self.values[rise])
     }
 }

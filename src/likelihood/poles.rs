@@ -8,7 +8,7 @@
 use rayon::prelude::*;
 
 use super::cycle::turning;
-use super::intensities::{concentrated, nearly_most_likely};
+use super::intensities::{concentrated, leading_fitted, nearly_most_likely};
 use super::noise::{Component, Noise};
 use super::path::Path;
 use super::predictor::Predictor;
@@ -40,13 +40,7 @@ impl Predictor {
                 concentrated(path, &noise)
             };
             let poles = POLES.par_iter().chain([1.0].par_iter()).filter(|&&other| other != now);
-            let mut likely: Vec<_> = poles.map(other).collect();
-            likely.sort_by(|a, b| b.1.total_cmp(&a.1));
-            likely.truncate(FITTED);
-            let tried: Vec<_> = likely
-                .into_par_iter()
-                .map(|(noise, _)| nearly_most_likely(path, &noise, &noise.components()))
-                .collect();
+            let tried = leading_fitted(path, poles.map(other).collect(), FITTED);
             let merit = |noise: &Noise, value: f64| value - penalty * noise.count() as f64;
             let mut take = |other: Option<(Noise, f64)>| {
                 if let Some((other, better)) = other

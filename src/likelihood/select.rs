@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::error::LikelihoodError;
 use super::follow::{Followed, Wanted};
 use super::hypothesis::Hypothesis;
-use super::intensities::{concentrated, most_likely, nearly_most_likely};
+use super::intensities::{concentrated, leading_fitted, most_likely, nearly_most_likely};
 use super::noise::{Component, Noise, Slow};
 use super::parametrised::Model;
 use super::path::Path;
@@ -145,7 +145,7 @@ impl Predictor {
 
     /// The most likely noise with one component more.
     fn added(&self, path: &Path, noise: &Noise, scales: &[f64]) -> Option<(Noise, f64)> {
-        let mut looked: Vec<(Noise, f64)> = self
+        let looked: Vec<(Noise, f64)> = self
             .more(path, noise)
             .into_par_iter()
             .flat_map_iter(|(component, pole)| {
@@ -164,13 +164,7 @@ impl Predictor {
                 tried.filter(|(_, value)| value.is_finite()).max_by(|a, b| a.1.total_cmp(&b.1))
             })
             .collect();
-        looked.sort_by(|a, b| b.1.total_cmp(&a.1));
-        looked.truncate(FITTED);
-        let fitted: Vec<_> = looked
-            .into_par_iter()
-            .map(|(noise, _)| nearly_most_likely(path, &noise, &noise.components()))
-            .collect();
-        fitted.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
+        leading_fitted(path, looked, FITTED).into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
     /// Components that are not there yet, with the pole that they begin with. Forces that push the
