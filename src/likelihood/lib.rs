@@ -68,6 +68,7 @@ mod rows;
 mod savage_dickey;
 mod scope;
 mod screen;
+mod screened;
 mod select;
 mod sensor_path;
 mod sets;

@@ -3,18 +3,13 @@
 //! A place is a channel with a coordinate, an input or output with itself, an offset alone, or a
 //! parameter. Its free curve has hats at quantiles of the filtered coordinate.
 
-use rayon::prelude::*;
-
 use super::error::LikelihoodError;
-use super::evidence::{Evidence, curve_prior, evidence, log_sum};
 use super::laws::{Law, Spot, laws, offsets};
 use super::memory::of_an_instrument;
-use super::noise::Noise;
 use super::path::Path;
 use super::predictor::{Predictor, column};
-use super::replay::Pass;
 use super::share::{between, knots};
-use super::tangent::{Column, Site, gram};
+use super::tangent::{Column, Site};
 use crate::effect::View;
 use crate::system::Origin;
 
@@ -42,22 +37,6 @@ pub(crate) struct Spotted {
     pub loads: Vec<(usize, Vec<f64>)>,
     /// Size of an amplitude: force, output or parameter.
     pub scale: f64,
-}
-
-/// What the sums say about a place.
-#[derive(Debug, Clone)]
-pub(crate) struct Screened {
-    /// Evidence of the free curve, where there is one.
-    pub curve: Option<Evidence>,
-    /// The best evidence of a law, averaged over its grid, or of a parameter.
-    pub best: f64,
-}
-
-impl Screened {
-    /// The place's evidence: of its free curve or of its laws, whichever is larger.
-    pub fn value(&self) -> f64 {
-        self.curve.as_ref().map_or(self.best, |curve| curve.value.max(self.best))
-    }
 }
 
 impl Predictor {
@@ -194,17 +173,11 @@ impl Predictor {
         };
         Ok((0..entries).map(mean).collect())
     }
-
-    /// The sums and evidences of places under a noise.
-    pub(crate) fn screen(&self, path: &Path, noise: &Noise, spots: &[Spotted]) -> Vec<Screened> {
-        let pass = Pass::of(path, noise, false);
-        spots.par_iter().map(|spot| screened(path, &pass, noise, spot)).collect()
-    }
 }
 
 impl Spotted {
     /// All columns: the hats of the free curve, then each law's coefficients; where each begins.
-    fn columns(&self) -> (Vec<Column>, Vec<usize>) {
+    pub(super) fn columns(&self) -> (Vec<Column>, Vec<usize>) {
         let mut columns: Vec<Vec<f64>> = vec![vec![0.0; self.z.len()]; self.knots.len()];
         if !self.knots.is_empty() {
             for (k, z) in self.z.iter().enumerate().filter(|(_, z)| z.is_finite()) {
@@ -244,43 +217,4 @@ impl Spotted {
         };
         self.z.iter().map(|z| if z.is_finite() { at(z) } else { 0.0 }).collect()
     }
-}
-
-fn screened(path: &Path, pass: &Pass, noise: &Noise, spot: &Spotted) -> Screened {
-    let (columns, first) = spot.columns();
-    let gram = gram(path, pass, noise, &columns);
-    let part = |range: std::ops::Range<usize>, prior: nalgebra::DMatrix<f64>| {
-        let (from, n) = (range.start, range.len());
-        let square = gram.square.view((from, from), (n, n)).into_owned();
-        evidence(&square, &gram.slope.rows(from, n).into_owned(), &prior)
-    };
-    let curves = spot.knots.len();
-    let curve = (curves > 0).then(|| part(0..curves, curve_prior(curves, spot.scale)));
-    let rms = |column: &[f64]| {
-        (column.iter().map(|v| v * v).sum::<f64>() / column.len().max(1) as f64).sqrt()
-    };
-    let own = |range: std::ops::Range<usize>| {
-        let sizes = range.clone().map(|j| {
-            let size = spot.scale / rms(columns[j].values()).max(f64::MIN_POSITIVE);
-            if size.is_finite() { size * size } else { 0.0 }
-        });
-        let prior =
-            nalgebra::DMatrix::from_diagonal(&nalgebra::DVector::from_iterator(range.len(), sizes));
-        part(range, prior).value
-    };
-    let laws: Vec<f64> = first.windows(2).map(|w| own(w[0]..w[1])).collect();
-    let mut names: Vec<&str> = spot.laws.iter().map(|law| law.name).collect();
-    names.dedup();
-    let averaged = names.iter().map(|name| {
-        let of = spot.laws.iter().zip(&laws).filter(|(law, _)| law.name == *name);
-        let values: Vec<f64> = of.map(|(_, value)| *value).collect();
-        log_sum(&values) - (values.len() as f64).ln()
-    });
-    let mut best = averaged.fold(f64::NEG_INFINITY, f64::max);
-    if let Site::Parameter(_) = spot.site {
-        let j = columns.len() - 1;
-        let prior = nalgebra::DMatrix::from_element(1, 1, spot.scale * spot.scale);
-        best = part(j..j + 1, prior).value;
-    }
-    Screened { curve, best }
 }
