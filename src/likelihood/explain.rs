@@ -77,7 +77,7 @@ impl Predictor {
                         .is_none()
                     || !stop() && fit.parameters_exchanged(&mut found, &mut now, &null)
                     || fit.steadied((&mut found, &mut now), most, stop)
-                    || fit.laws_anew(&mut found, &mut now, stop) && seen.insert(now.names())
+                    || fit.laws_anew((&mut found, &mut now), most, stop) && seen.insert(now.names())
                     || fit.taken_back(&mut found, &mut now, stop)
             };
             if stop() || !exchanged() {

@@ -7,7 +7,8 @@
 //! 1. where no further cause is probable as the others stand, the best of each place are fitted together with
 //!    them;
 //! 2. beside the other causes the law of a place is chosen anew among all that were fitted there, a plainer one beside
-//!    all free parameters, too (`all_parameters.rs`).
+//!    all free parameters, and beside a constant at its site, too (`all_parameters.rs`, `steady.rs`): what a law of
+//!    more numbers has beside it may be what these do.
 //!
 //! Both compare log L - (numbers) / 2 ln(samples) - ln(choices). Sources: Miller, "Subset Selection in
 //! Regression", 2nd ed., 2002, sections 3.4 and 3.5 (sequential replacement); Buja, Hastie and Tibshirani, Annals
@@ -23,10 +24,30 @@ use super::hypothesis::{Hypothesis, names, numbers};
 use super::places::Survey;
 use super::predictor::Predictor;
 use super::ranked::MISSING;
+use super::tangent::Site;
 use super::weigh::{Weighed, plainest};
 
 /// Places of which the best is fitted together with the causes before.
 const PLACES: usize = 4;
+
+/// What else is free beside another law of a place.
+#[derive(Debug, Clone, Copy)]
+struct Added {
+    /// All free parameters.
+    parameters: bool,
+    /// A constant at the site of the law.
+    constant: bool,
+}
+
+impl Added {
+    /// Nothing first.
+    const ALL: [Self; 4] = [
+        Self { parameters: false, constant: false },
+        Self { parameters: true, constant: false },
+        Self { parameters: false, constant: true },
+        Self { parameters: true, constant: true },
+    ];
+}
 
 impl Predictor {
     /// The causes with one more, of those of a survey that are improbable while the others stay as they are,
@@ -71,26 +92,34 @@ impl Predictor {
     /// The causes with the law of one place chosen anew beside the others; whether it is another one.
     pub(crate) fn laws_anew(
         &self,
-        found: &mut Vec<Found>,
-        now: &mut Hypothesis,
+        (found, now): (&mut Vec<Found>, &mut Hypothesis),
+        most: usize,
         stop: &(dyn Fn() -> bool + Sync),
     ) -> bool {
         // one cause alone was chosen as it stands
         if found.len() < 2 {
             return false;
         }
-        (0..found.len()).any(|i| !stop() && self.law_anew(found, now, i))
+        (0..found.len()).any(|i| !stop() && self.law_anew((found, now), i, most))
     }
 
-    fn law_anew(&self, found: &mut Vec<Found>, now: &mut Hypothesis, at: usize) -> bool {
+    fn law_anew(
+        &self,
+        (found, now): (&mut Vec<Found>, &mut Hypothesis),
+        at: usize,
+        most: usize,
+    ) -> bool {
         let own = found[at].clone();
         let present = self.merit(now, found);
-        let replaced = |(set, among_parameters): (&Weighed, bool)| {
+        let replaced = |(set, with): (&Weighed, Added)| {
             let mut all = found.clone();
             let parts = set.hypothesis.parts.clone();
             all[at] = Found { parts, choice: set.choice, ..own.clone() };
             let mut from = now.clone();
-            if among_parameters {
+            if with.constant {
+                all = self.constants(&all, own.place.0, most).pop()?;
+            }
+            if with.parameters {
                 (all, from) = self.with_all_parameters(&all, now)?;
             }
             let fitted = self.fit_all_raced(&mut all, &from, present)?;
@@ -98,21 +127,29 @@ impl Predictor {
             let cause = all.iter().find(|cause| cause.place == own.place)?;
             Some((own.as_set(cause, &fitted, gain), all, fitted))
         };
-        // what a law has beside a plainer one may be what parameters do
-        let is_plainer = |set: &&Weighed| set.hypothesis.numbers() < numbers(&own.parts);
-        let plainer = own.rivals.iter().filter(is_plainer).map(|set| (set, true));
-        let tried: Vec<_> = own.rivals.iter().map(|set| (set, false)).chain(plainer).collect();
+        let is_plainer = |set: &Weighed| set.hypothesis.numbers() < numbers(&own.parts);
+        let with = |set| if is_plainer(set) { &Added::ALL[..] } else { &Added::ALL[..1] };
+        let both = |set| with(set).iter().map(move |&with| (set, with));
+        let tried: Vec<(&Weighed, Added)> = own.rivals.iter().flat_map(both).collect();
         let mut all: Vec<_> = tried.into_par_iter().filter_map(replaced).collect();
         if all.is_empty() {
             return false;
         }
         all.push((own.as_set(&own, now, 0.0), found.clone(), now.clone()));
         all.sort_by(|a, b| b.0.log_odds.total_cmp(&a.0.log_odds));
-        let has_group = |causes: &[Found]| causes.iter().any(Found::is_all_parameters);
-        let grouped = all.iter().filter(|(_, causes, _)| has_group(causes));
-        let grouped: Vec<f64> = grouped.map(|(set, ..)| set.log_odds).collect();
         let every: Vec<f64> = all.iter().map(|(set, ..)| set.log_odds).collect();
-        let of_parameters = (log_sum(&grouped) - log_sum(&every)).exp();
+        let has = |causes: &[Found], place| causes.iter().any(|cause| cause.place == place);
+        // what came with another law, and how probable it is
+        let came: Vec<((Site, Option<usize>), f64)> =
+            [(Site::Parameters, None), (own.place.0, None)]
+                .into_iter()
+                .filter(|&place| !has(found, place))
+                .map(|place| {
+                    let with = all.iter().filter(|(_, causes, _)| has(causes, place));
+                    let with: Vec<f64> = with.map(|(set, ..)| set.log_odds).collect();
+                    (place, (log_sum(&with) - log_sum(&every)).exp())
+                })
+                .collect();
         // each law beside the parameters that it is likelier with
         let mut known = BTreeSet::new();
         all.retain(|(set, ..)| known.insert(set.hypothesis.names()));
@@ -127,10 +164,11 @@ impl Predictor {
         let Some((_, causes, fitted)) = all.into_iter().find(|(set, ..)| is_best(set)) else {
             return false;
         };
-        let is_new = !has_group(found) && has_group(&causes);
         (*found, *now) = (causes, fitted);
-        for cause in found.iter_mut().filter(|cause| is_new && cause.is_all_parameters()) {
-            (cause.law, cause.at_place) = (of_parameters, of_parameters);
+        for cause in found.iter_mut() {
+            if let Some((_, chance)) = came.iter().find(|(place, _)| cause.place == *place) {
+                (cause.law, cause.at_place) = (*chance, *chance);
+            }
         }
         let Some(cause) = found.iter_mut().find(|cause| cause.place == own.place) else {
             return false;

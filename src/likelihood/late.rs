@@ -15,6 +15,7 @@
 use std::ops::Range;
 
 use super::found::Found;
+use super::given::Given;
 use super::hypothesis::Hypothesis;
 use super::noise::Noise;
 use super::predictor::Predictor;
@@ -26,6 +27,14 @@ use super::weigh::plainest;
 type Fitted = (Vec<Found>, Hypothesis);
 
 impl Predictor {
+    /// Whether samples that are held back have another noise than the other samples of this model.
+    pub fn is_otherwise_in(&self, held: &[Range<usize>]) -> bool {
+        let mut fit = self.blinded(held);
+        let Ok(begun) = fit.first_hypothesis(&Given::default(), None) else { return false };
+        let all = Self { start: fit.start.clone(), ..self.clone() };
+        all.is_another_noise(&begun.null, held).unwrap_or(false)
+    }
+
     /// The causes with what begins in held samples, where these are otherwise.
     pub(super) fn otherwise(
         &self,
@@ -68,7 +77,7 @@ impl Predictor {
         stop: &(dyn Fn() -> bool + Sync),
     ) -> Option<Fitted> {
         let here = self.holding(now).ok()?;
-        let time = Some(self.model.plan.sources.named - 1);
+        let time = Some(self.model.plan.sources.time());
         let one = |site: Site| {
             let place = (site, time);
             if stop() || found.iter().any(|cause| cause.place == place) {

@@ -14,14 +14,12 @@ use super::path::Path;
 use super::predictor::Predictor;
 use super::replay::Pass;
 use super::select::place;
-use crate::statistics::whiteness;
+use crate::statistics::is_white;
 
 /// Poles that a slow component may have beside 1.
 pub(crate) const POLES: [f64; 6] = [0.3, 0.6, 0.8, 0.9, 0.97, 0.99];
 /// Poles that are fitted, of all that are looked at.
 const FITTED: usize = 2;
-/// Score of the Ljung-Box test below which innovations count as white: nothing is foretold better.
-const WHITE: f64 = 3.0;
 /// Factor of what fades in a sample between two poles that are looked at, and how often its root is taken.
 const FACTOR: f64 = 1.6;
 const TIMES: usize = 3;
@@ -71,7 +69,7 @@ fn leaves_white(path: &Path, noise: &Noise) -> bool {
     let pass = Pass::of(path, noise, false);
     (0..path.outputs).all(|o| {
         let own = pass.z.iter().skip(o).step_by(path.outputs.max(1)).copied();
-        whiteness(&own.filter(|z| z.is_finite()).collect::<Vec<f64>>()) < WHITE
+        is_white(&own.filter(|z| z.is_finite()).collect::<Vec<f64>>())
     })
 }
 

@@ -52,7 +52,7 @@ impl Predictor {
             view.own_path = own_path;
             view
         };
-        let named = 0..plan.sources.named - 1;
+        let named = 0..plan.sources.time();
         let distinct: Vec<usize> =
             named.filter(|&e| !(0..e).any(|other| plan.rates.same(e, other))).collect();
         let push = |site, source: Option<usize>, z: Vec<f64>, spot, scale, direction| {
@@ -78,7 +78,7 @@ impl Predictor {
             Spotted { site, source, z, knots, laws, remembering, loads, scale }
         };
         let channel = |e| Spot::Channel { velocity: plan.is_velocity(e), angle: plan.is_angle(e) };
-        let time = plan.sources.named - 1;
+        let time = plan.sources.time();
         let clock = || column(&path.seen, entries, time);
         let groups = self.pushing_alike(path);
         let forces: Vec<usize> = groups.iter().map(|group| group[0]).collect();

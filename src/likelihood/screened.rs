@@ -15,8 +15,8 @@ use super::replay::Pass;
 use super::screen::Spotted;
 use super::tangent::{Gram, Site, gram};
 
-/// Columns whose sums are made in one go, unless one law has more: their products grow with the square of that.
-const TOGETHER: usize = 16;
+/// Columns whose sums are made in one pass, unless one law has more: products grow with their square.
+const AT_ONCE: usize = 16;
 
 /// What the sums say about a place.
 #[derive(Debug, Clone)]
@@ -43,12 +43,12 @@ impl Predictor {
 }
 
 /// Columns that are summed at a time: those of the free curve, whole laws, and what comes after them.
-fn together(curves: usize, first: &[usize], count: usize) -> Vec<Range<usize>> {
+fn blocks(curves: usize, first: &[usize], count: usize) -> Vec<Range<usize>> {
     let mut found: Vec<Range<usize>> = vec![];
     let laws = first.windows(2).map(|w| w[0]..w[1]);
     let rest = first.last().copied().unwrap_or(curves)..count;
     for own in std::iter::once(0..curves).chain(laws).chain([rest]).filter(|own| !own.is_empty()) {
-        match found.last_mut().filter(|last| own.end - last.start <= TOGETHER) {
+        match found.last_mut().filter(|last| own.end - last.start <= AT_ONCE) {
             Some(last) => last.end = own.end,
             None => found.push(own),
         }
@@ -60,8 +60,8 @@ fn together(curves: usize, first: &[usize], count: usize) -> Vec<Range<usize>> {
 pub(super) fn screened(path: &Path, pass: &Pass, noise: &Noise, spot: &Spotted) -> Screened {
     let (columns, first) = spot.columns();
     let curves = spot.knots.len();
-    // products of columns that no evidence has together are not wanted
-    let blocks = together(curves, &first, columns.len());
+    // products of columns that no evidence has both of are not wanted
+    let blocks = blocks(curves, &first, columns.len());
     let sums: Vec<(usize, Gram)> = blocks
         .into_iter()
         .map(|block| (block.start, gram(path, pass, noise, &columns[block])))

@@ -43,7 +43,7 @@ impl Predictor {
                 let mut noise = now.noise.clone();
                 noise.slow[c].pole = pole;
                 let plain = (pole != now.noise.slow[c].pole).then(|| found.clone());
-                let constants = self.constants(found, c, most).into_iter();
+                let constants = self.constants(found, Site::Force(c), most).into_iter();
                 constants.chain(plain).map(move |causes| (causes, noise.clone()))
             })
             .collect();
@@ -93,10 +93,9 @@ impl Predictor {
         all.into_iter().take(FITTED).map(|(_, causes, noise)| (causes, noise)).collect()
     }
 
-    /// The causes with a constant at a channel beside them, for each law of a constant; none where there is
+    /// The causes with a constant at a site beside them, for each law of a constant; none where there is
     /// one, or no room for one more.
-    fn constants(&self, found: &[Found], c: usize, most: usize) -> Vec<Vec<Found>> {
-        let site = Site::Force(c);
+    pub(super) fn constants(&self, found: &[Found], site: Site, most: usize) -> Vec<Vec<Found>> {
         let is_constant =
             |part: &Part| matches!(part, Part::Law { site: at, source: None, .. } if *at == site);
         if laws(found) >= most || found.iter().flat_map(|cause| &cause.parts).any(is_constant) {

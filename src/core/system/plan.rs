@@ -255,7 +255,7 @@ impl Plan {
                 known: self.sources.names(),
             })
         };
-        let time = self.sources.named - 1;
+        let time = self.sources.time();
         let first = match (&placed.of, card.needs) {
             (Some(of), _) => find(of)?,
             (None, Needs::Nothing | Needs::Time) => time,

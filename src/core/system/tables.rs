@@ -48,6 +48,11 @@ impl Sources {
         Self { entries, named }
     }
 
+    /// Position of time, the last of the named ones.
+    pub fn time(&self) -> usize {
+        self.named - 1
+    }
+
     /// Position of a name.
     pub fn find(&self, name: &str) -> Option<usize> {
         self.entries[..self.named].iter().position(|(signal, _)| signal.name == name)

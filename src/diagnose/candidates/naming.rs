@@ -51,6 +51,12 @@ impl Candidate {
         }
     }
 
+    /// The parameter that is the moment at which it begins.
+    pub fn moment(&self) -> Option<usize> {
+        let begins = self.card.properties.begins?;
+        self.card.parameters.iter().position(|own| own.name == begins.from)
+    }
+
     /// When it begins, of its numbers.
     pub fn onset(&self, values: &[Value]) -> Option<Onset> {
         let begins = self.card.properties.begins?;

@@ -47,7 +47,7 @@ impl Builder<'_, '_> {
     pub(crate) fn sources(&self) -> Vec<usize> {
         let base = &self.problem.base;
         let mut kept: Vec<usize> = vec![];
-        for entry in 0..base.sources.named - 1 {
+        for entry in 0..base.sources.time() {
             let is_known = |&other: &usize| {
                 base.rates.same(other, entry)
                     || base.sources.is_output(entry) && base.rates.is_multiple(other, entry)
@@ -77,6 +77,6 @@ impl Builder<'_, '_> {
     }
 
     pub(crate) fn time(&self) -> usize {
-        self.problem.base.sources.named - 1
+        self.problem.base.sources.time()
     }
 }

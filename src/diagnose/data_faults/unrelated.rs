@@ -20,7 +20,7 @@ use crate::data::Record;
 use crate::evaluate::{EvaluateError, Init, Run};
 use crate::look::coherences;
 use crate::prepare::windows::windows;
-use crate::statistics::{Regression, deviation, mean, whiteness};
+use crate::statistics::{Regression, deviation, is_white, mean};
 use crate::system::System;
 
 /// Readings that a verdict takes, at least: pieces of spectra have to be many.
@@ -31,8 +31,6 @@ const RELATED: f64 = 1e-3;
 const CLAIM: f64 = 1e-6;
 /// Samples that inputs are looked back by.
 const LAGS: usize = 4;
-/// Score of the Ljung-Box test below which readings are one level with noise.
-const WHITE: f64 = 3.0;
 
 /// The records as far as one output can be judged, one after the other.
 #[derive(Default)]
@@ -67,7 +65,7 @@ pub(crate) fn unrelated(
         }
         let readings: Vec<f64> = joined.y.iter().copied().filter(|v| v.is_finite()).collect();
         let noise = deviation(&readings);
-        let is_level = whiteness(&readings) < WHITE;
+        let is_level = is_white(&readings);
         faults.push(Fault {
             kind: FaultKind::Unrelated { level: mean(&readings), noise, is_level, p_value },
             into: signal.name.clone(),

@@ -19,7 +19,7 @@ use crate::fit::problem::{Grain, Model, Part};
 use crate::fit::refit::{Refit, Stop};
 use crate::likelihood::OutputNoise;
 use crate::prepare::input_dependence::DEPENDS;
-use crate::statistics::{mean, rms, whiteness};
+use crate::statistics::{is_white, mean, rms, whiteness};
 use crate::validate::ahead::ahead;
 use crate::validate::false_discovery::false_discovery;
 use crate::validate::gain::gain;
@@ -32,8 +32,6 @@ use crate::watch::Watch;
 const EXPLAINED: f64 = 0.8;
 /// Share of the removable error that named causes must account for, within what is known of it.
 const MOST: f64 = 0.5;
-/// Score of the Ljung-Box test below which a residual counts as white.
-const WHITE: f64 = 3.0;
 
 impl Context<'_, '_> {
     /// Everything that a search says of the machine and its records.
@@ -182,7 +180,7 @@ impl Context<'_, '_> {
             let noise = floors.get(&signal.name).map(|floor| floor.std).filter(|std| *std > 0.0);
             let size = rms(&off);
             let ratio_to_noise = noise.map(|std| size / std);
-            let white = score < WHITE;
+            let white = is_white(&off);
             let wanders_by = if white { None } else { OutputNoise::of(&off).steps() };
             let mean = Some(mean(&off)).filter(|mean| 2.0 * mean * mean > size * size);
             (signal.name.clone(), Left { ratio_to_noise, white, score, wanders_by, mean })

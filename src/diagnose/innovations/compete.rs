@@ -100,15 +100,6 @@ impl Rivals {
         has_process(inside) && inside.criterion() - outside > clearly
     }
 
-    /// Whether a sensor wanders where all noise is at the sensors: a walk goes anywhere and stays there, as a sensor
-    /// does that has slipped.
-    pub fn have_a_walk(&self) -> bool {
-        match self.outside.as_ref().map(|fitted| &fitted.noise) {
-            Some(NoiseModel::FreeRun(outputs)) => outputs.iter().any(|own| own.steps().is_some()),
-            _ => false,
-        }
-    }
-
     /// The better criterion.
     pub fn best(&self) -> f64 {
         let both = [&self.outside, &self.inside].into_iter().flatten().map(Fitted::criterion);

@@ -19,12 +19,10 @@ use crate::fit::refit::MANY;
 use crate::prepare::input_dependence::DEPENDS;
 use crate::prepare::operating_range::Nominal;
 use crate::prepare::prepared::Prepared;
-use crate::statistics::whiteness;
+use crate::statistics;
 use crate::validate::worse::judged;
 use crate::watch::Watch;
 
-/// Score of the Ljung-Box test up to which what is left counts as white.
-const WHITE: f64 = 3.0;
 /// Share of the mean square that a simulation leaves that is nearly all of it.
 const ACCOUNTED: f64 = 0.95;
 
@@ -140,7 +138,7 @@ pub(super) fn is_white(prepared: &Prepared<'_>, y: &[Vec<f64>]) -> bool {
     let problem = &prepared.problem;
     (0..problem.y.len()).all(|o| {
         let off: Vec<f64> = problem.y[o].iter().zip(&y[o]).map(|(a, b)| a - b).collect();
-        whiteness(&problem.counted(o, &off, Part::All)) < WHITE
+        statistics::is_white(&problem.counted(o, &off, Part::All))
     })
 }
 
@@ -155,12 +153,13 @@ fn by_innovations(
     let problem = &prepared.problem;
     let (base, known) = predictors(prepared, allowed, answer)?;
     let rivals = Rivals::of(&known);
+    let held: Vec<_> = problem.choose.clone();
     let is_called_for = rivals.call_for_more(CLEARLY);
-    if !(is_called_for || rivals.have_a_walk()) || watch.stopped() {
+    // a search by simulations knows nothing of what begins in samples that it does not fit
+    if !(is_called_for || known.is_otherwise_in(&held)) || watch.stopped() {
         return None;
     }
     watch.report(0.92, "searching by innovations");
-    let held: Vec<_> = problem.choose.clone();
     let is_bare = answer.causes() + count_moved(answer) == 0;
     let noise = rivals.inside.as_ref().filter(|_| is_bare).and_then(|fitted| match &fitted.noise {
         NoiseModel::Predictor(noise) => Some(noise),
@@ -172,7 +171,7 @@ fn by_innovations(
         base.explain((given, most), &held, noise, &|| watch.stopped()).ok()
     };
     // beside noise inside the plant, numbers of simulations and their errors are not to be had: of two answers
-    // that are as probable, the one by innovations is taken; where only a sensor wanders, simulations are as good
+    // that are as probable, the one by innovations is taken; else simulations are as good
     let least = of_answer + if is_called_for { -CLEARLY } else { CLEARLY };
     let is_better = |found: &Explanation| found.criterion() > least;
     let concluded = |found: &Explanation| {

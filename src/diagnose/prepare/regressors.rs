@@ -108,7 +108,7 @@ fn lagged<'s>(
 ) -> Vec<Vec<f64>> {
     let base = &problem.base;
     let mut kept: Vec<usize> = vec![];
-    for entry in 0..base.sources.named - 1 {
+    for entry in 0..base.sources.time() {
         if !kept.iter().any(|&other| base.rates.same(other, entry)) {
             kept.push(entry);
         }

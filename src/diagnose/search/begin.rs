@@ -1,7 +1,8 @@
-//! Models with moves made: sizes as the dictionary says, thresholds where they fit best.
+//! Models with moves made: sizes as the dictionary says, thresholds and moments where they fit best.
 
 use super::beam::Fit;
 use super::dictionary::{Item, spread};
+use super::moments::dated;
 use super::moves::Move;
 use super::starts;
 use crate::candidates::probes::with_candidate;
@@ -76,6 +77,10 @@ pub(super) fn begun(
             let item = &items[*item];
             let parameters = best.map_or_else(|| sized(item, sizes), |(_, parameters)| parameters);
             *model = model.with(&item.cause, parameters);
+            let last = model.added.len() - 1;
+            if let Some(better) = dated(problem, model, last, (&white, noise)) {
+                *model = better;
+            }
         }
     }
     models
@@ -91,7 +96,9 @@ fn sized(item: &Item, sizes: &[f64]) -> Vec<f64> {
 fn points(item: &Item, sizes: &[f64], far: bool) -> Vec<Vec<f64>> {
     let cause = &item.cause;
     let own = sized(item, sizes);
-    if !(cause.blended() || cause.thresholds || far && cause.linear.len() == 1) {
+    let is_one = !(cause.blended() || cause.thresholds || far && cause.linear.len() == 1);
+    // a moment is looked for sample by sample
+    if is_one || cause.moment().is_some() {
         return vec![own];
     }
     let mut points = starts::points(cause, item.start, sizes, item.probe, None);

@@ -29,6 +29,7 @@ mod item;
 mod laws;
 mod leading;
 mod metric;
+mod moments;
 mod moves;
 mod nameless;
 mod neighbours;

@@ -16,7 +16,7 @@ use crate::candidates::network_start::start;
 use crate::findings::formula::read;
 use crate::fit::problem::Grain;
 use crate::prepare::input_dependence::DEPENDS;
-use crate::statistics::whiteness;
+use crate::statistics::is_white;
 
 /// Curves that are fitted, and their sizes as shares of what is foretold.
 const CURVES: usize = 4;
@@ -30,8 +30,6 @@ const FIRST: usize = 4;
 const ITERATIONS: usize = 12;
 /// Share of what is left that a law must predict where it was not fitted, to be fitted at all.
 const WORTH: f64 = 0.02;
-/// Distance from white, as a normal score, of what still has something in it.
-const COLOURED: f64 = 3.0;
 
 /// Fits laws without a name on top of the best model and in the place of all that it names.
 pub(super) fn nameless(study: &mut Study<'_, '_>) {
@@ -44,7 +42,7 @@ pub(super) fn nameless(study: &mut Study<'_, '_>) {
     let hidden = |study: &Study<'_, '_>, best: &Fit| {
         let left = best.noise.whiten(&best.residual);
         let n = (left.len() / study.problem.y.len().max(1)).max(1);
-        left.chunks(n).any(|r| whiteness(r) > COLOURED)
+        left.chunks(n).any(|r| !is_white(r))
             || study.dependence(&best.model) > DEPENDS
             || best.noise.remembers() && study.unforeseen(best) > DEPENDS
     };

@@ -134,11 +134,9 @@ impl<'a, 'b> Study<'a, 'b> {
 
     /// Fits from better initial states, of those that have any: all else as it is.
     pub fn restarted(&self, free: bool, fits: &[Fit]) -> Vec<Wish> {
-        let fitted = |fit: &Fit| Fitted {
-            model: fit.model.clone(),
-            keys: vec![],
-            columns: vec![],
-            residuals: fit.residual.clone(),
+        let fitted = |fit: &Fit| {
+            let (model, residuals) = (fit.model.clone(), fit.residual.clone());
+            Fitted { model, keys: vec![], columns: vec![], residuals }
         };
         if self.watch.stopped() {
             return vec![];
@@ -175,12 +173,14 @@ impl<'a, 'b> Study<'a, 'b> {
         dependence(problem, self.nominal, &foreseen)
     }
 
-    /// Fits the leading ones once more, each in its own disturbance.
+    /// Fits the leading ones once more, each in its own disturbance, and what begins in them from its most
+    /// likely moment.
     pub fn polish(&mut self, within: f64) {
         for free in [false, true] {
             let close = self.beam.within(within).filter(|fit| fit.free == free);
-            let coloured = close.filter(|fit| fit.noise.is_coloured());
-            let wishes: Vec<Wish> = coloured.map(Wish::from).collect();
+            let close: Vec<Fit> = close.cloned().collect();
+            let mut wishes = self.dated(free, &close);
+            wishes.extend(close.iter().filter(|fit| fit.noise.is_coloured()).map(Wish::from));
             self.fit_and_keep(free, &wishes, 4);
         }
     }
