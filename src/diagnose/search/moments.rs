@@ -23,14 +23,14 @@ use crate::statistics::{add_to_basis, dot, project};
 const NEAR: usize = 48;
 
 /// Whitened columns of what is free beside a law, orthogonal to each other, and the noise that they were whitened by.
-pub(super) type Beside<'a> = (&'a [Vec<f64>], &'a dyn Whitener);
+pub(super) type Whitened<'a> = (&'a [Vec<f64>], &'a dyn Whitener);
 
 /// A model with the law `a` of its causes at its most likely moment; `None` where it has that, or begins at none.
 pub(super) fn dated(
     problem: &Problem<'_>,
     model: &Model,
     a: usize,
-    (basis, noise): Beside<'_>,
+    (basis, noise): Whitened<'_>,
 ) -> Option<Model> {
     let cause = &model.added[a].cause;
     let i = cause.moment()?;
@@ -87,11 +87,12 @@ impl Study<'_, '_> {
                 if self.watch.stopped() {
                     return found;
                 }
-                let beside = |key: &Key| !matches!(key, Key::EffectParameter(own, _) if *own == a);
+                let is_other =
+                    |key: &Key| !matches!(key, Key::EffectParameter(own, _) if *own == a);
                 let mut basis = vec![];
                 tangents(self.problem, self.nuisance(free), &fit.model, &fit.residual)
                     .iter()
-                    .filter(|(key, _)| beside(key))
+                    .filter(|(key, _)| is_other(key))
                     .for_each(|(_, column)| add_to_basis(&mut basis, fit.noise.whiten(column)));
                 let better = dated(self.problem, &fit.model, a, (&basis, fit.noise.as_ref()));
                 found.extend(better.map(|model| Wish { model, noise: fit.noise.clone() }));
