@@ -71,14 +71,14 @@ fn open(output: &Path) -> Result<(), Failure> {
     let here = |folder: &Path| {
         if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder.into() }
     };
-    let mut folders = output.ancestors().skip(1).map(here).enumerate();
-    let Some((above, folder)) = folders.find(|(_, folder)| folder.exists()) else { return Ok(()) };
+    // each with what is to be made in it
+    let mut folders = output.ancestors().skip(1).map(here).zip(output.ancestors());
+    let Some((folder, first)) = folders.find(|(folder, _)| folder.exists()) else { return Ok(()) };
     if !folder.is_dir() {
         let message = format!("{} is a file, and no folder to write into", folder.display());
         return Err(refused(message, "--out", "give --out the name of a folder".into()));
     }
-    let tried = if above == 0 { output.to_path_buf() } else { folder.join("new") };
-    try_write(&tried).map_err(|error| cannot_write(output, &error))
+    try_write(first).map_err(|error| cannot_write(output, &error))
 }
 
 /// The files of some folders and of folders in these, as inputs.

@@ -56,6 +56,15 @@ fn what_a_call_reads_is_never_written_to() {
     refused(&folder, line, "again/extended.toml");
 }
 
+/// Folders are made where they are wanted, whatever else lies there.
+#[test]
+fn a_folder_in_a_folder_that_is_not_there_is_made() {
+    let folder = folder("outputs_below");
+    std::fs::create_dir(folder.join("new")).unwrap();
+    run(&folder, "look --model m.toml --data d.csv --out below/one").exits(0);
+    assert!(!bytes(&folder, "below/one/look.html").is_empty());
+}
+
 #[cfg(unix)]
 #[test]
 fn another_name_of_an_input_is_that_input() {
