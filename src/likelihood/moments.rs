@@ -24,8 +24,7 @@ impl Law {
 
     /// The parameter that is the moment at which it begins.
     fn moment(&self) -> Option<usize> {
-        let begins = self.card.properties.begins?;
-        self.card.parameters.iter().position(|own| own.name == begins.from)
+        self.card.position(self.card.properties.begins.map(|begins| begins.from))
     }
 
     /// It at moments within some time of its own.

@@ -26,4 +26,4 @@ pub use lines::lines;
 pub use sandwich::covariance;
 pub use score_test::{Dependence, Regression};
 pub use spectrum::{outstanding, pieces, power, strongest};
-pub use whiteness::{is_white, whiteness};
+pub use whiteness::{WHITE, is_white, whiteness};

@@ -14,7 +14,7 @@ use super::blocks::{autocorrelation, mean};
 /// Lags.
 const LAGS: usize = 20;
 /// Score below which a series counts as white: of white ones two in a thousand score more.
-const WHITE: f64 = 3.0;
+pub const WHITE: f64 = 3.0;
 
 /// Whether a series counts as white, for all that its correlations say.
 pub fn is_white(x: &[f64]) -> bool {

@@ -53,8 +53,7 @@ impl Candidate {
 
     /// The parameter that is the moment at which it begins.
     pub fn moment(&self) -> Option<usize> {
-        let begins = self.card.properties.begins?;
-        self.card.parameters.iter().position(|own| own.name == begins.from)
+        self.card.position(self.card.properties.begins.map(|begins| begins.from))
     }
 
     /// When it begins, of its numbers.

@@ -19,7 +19,7 @@ use crate::fit::problem::{Grain, Model, Part};
 use crate::fit::refit::{Refit, Stop};
 use crate::likelihood::OutputNoise;
 use crate::prepare::input_dependence::DEPENDS;
-use crate::statistics::{is_white, mean, rms, whiteness};
+use crate::statistics::{WHITE, mean, rms, whiteness};
 use crate::validate::ahead::ahead;
 use crate::validate::false_discovery::false_discovery;
 use crate::validate::gain::gain;
@@ -180,7 +180,7 @@ impl Context<'_, '_> {
             let noise = floors.get(&signal.name).map(|floor| floor.std).filter(|std| *std > 0.0);
             let size = rms(&off);
             let ratio_to_noise = noise.map(|std| size / std);
-            let white = is_white(&off);
+            let white = score < WHITE;
             let wanders_by = if white { None } else { OutputNoise::of(&off).steps() };
             let mean = Some(mean(&off)).filter(|mean| 2.0 * mean * mean > size * size);
             (signal.name.clone(), Left { ratio_to_noise, white, score, wanders_by, mean })

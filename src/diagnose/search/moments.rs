@@ -82,18 +82,19 @@ impl Study<'_, '_> {
     pub(super) fn dated(&self, free: bool, fits: &[Fit]) -> Vec<Wish> {
         let mut found = vec![];
         for fit in fits {
-            let added = fit.model.added.iter().enumerate().skip(fit.model.known());
-            for (a, _) in added.filter(|(_, own)| own.cause.moment().is_some()) {
-                if self.watch.stopped() {
-                    return found;
-                }
+            let added = &fit.model.added;
+            let begins = |a: &usize| added[*a].cause.moment().is_some();
+            let laws: Vec<usize> = (fit.model.known()..added.len()).filter(begins).collect();
+            if laws.is_empty() || self.watch.stopped() {
+                continue;
+            }
+            let all = tangents(self.problem, self.nuisance(free), &fit.model, &fit.residual);
+            for a in laws {
                 let is_other =
                     |key: &Key| !matches!(key, Key::EffectParameter(own, _) if *own == a);
+                let others = all.iter().filter(|(key, _)| is_other(key));
                 let mut basis = vec![];
-                tangents(self.problem, self.nuisance(free), &fit.model, &fit.residual)
-                    .iter()
-                    .filter(|(key, _)| is_other(key))
-                    .for_each(|(_, column)| add_to_basis(&mut basis, fit.noise.whiten(column)));
+                others.for_each(|(_, column)| add_to_basis(&mut basis, fit.noise.whiten(column)));
                 let better = dated(self.problem, &fit.model, a, (&basis, fit.noise.as_ref()));
                 found.extend(better.map(|model| Wish { model, noise: fit.noise.clone() }));
             }
