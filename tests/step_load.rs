@@ -103,6 +103,12 @@ fn a_sensor_that_slips_is_named_where_parameters_are_wrong() {
     }
 }
 
+#[test]
+fn a_sensor_that_slips_is_named_in_a_plant_that_is_disturbed() {
+    let noise = Sizes { white: vec![0.1], measurement: vec![0.01], ..Sizes::default() };
+    asks_for_the_sensor(slipped(60.3, &noise, 8), 60.3);
+}
+
 /// A force that walks goes anywhere and stays there, but never at once.
 #[test]
 fn a_force_that_walks_is_no_step() {

@@ -105,19 +105,33 @@ pub(super) fn alike(known: &[Arc<Candidate>], cause: &NamedCause) -> Vec<(Arc<Ca
         cause.laws.iter().any(|law| stands_for(c, law).is_some())
             || (cause.parameter.is_some() && c.into == cause.into)
     };
-    let mut found = of_library(known, &cause.others);
+    let others = cause.others.iter().filter(|set| !has_all(set, cause));
+    let mut found = of_library(known, others);
     found.retain(|(c, _)| !own(c));
     found.truncate(SET - 1);
     found
 }
 
+/// Whether a set has all of a cause: it is that cause with more beside it, and nothing that may be there in its stead.
+fn has_all(set: &FittedLaws, cause: &NamedCause) -> bool {
+    let is_there = |law: &Placed| {
+        let is_it = |other: &Placed| {
+            other.effect.typetag_name() == law.effect.typetag_name()
+                && (&other.into, &other.of) == (&law.into, &law.of)
+        };
+        set.laws.iter().any(is_it)
+    };
+    let moved = || set.parameters.iter().any(|(name, _)| *name == cause.into);
+    cause.laws.iter().all(is_there) && (cause.parameter.is_none() || moved())
+}
+
 /// Laws of sets that were fitted, as causes of the library, the most probable first.
-pub(super) fn of_library(
+pub(super) fn of_library<'a>(
     known: &[Arc<Candidate>],
-    sets: &[FittedLaws],
+    sets: impl IntoIterator<Item = &'a FittedLaws>,
 ) -> Vec<(Arc<Candidate>, f64)> {
     let mut found: Vec<(Arc<Candidate>, f64)> = vec![];
-    for set in sets.iter().filter(|set| set.probability > LOOK_ALIKE) {
+    for set in sets.into_iter().filter(|set| set.probability > LOOK_ALIKE) {
         let moved = |c: &&Arc<Candidate>| {
             let is_parameter = matches!(c.wire, Wire::Parameter(_));
             is_parameter && set.parameters.iter().any(|(name, _)| *name == c.into)
